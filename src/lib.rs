@@ -25,13 +25,13 @@
 // `cli::tell` survives a reader that has gone away
 #![warn(clippy::print_stderr)]
 
-pub mod bench;
 pub mod calibration;
 pub mod ci;
 pub mod cli;
 pub mod comparison;
 pub mod coverage;
 pub mod curves;
+pub mod evidence;
 pub mod external;
 mod format;
 pub mod interrupt;
@@ -39,14 +39,13 @@ pub mod kinds;
 pub mod measured;
 pub mod movement;
 pub mod optimise;
+pub mod plot;
 mod process_output;
 pub mod project;
 pub mod reference;
 pub mod report;
 pub mod sampling;
 pub mod scene;
-pub mod stress;
-pub mod study;
 pub mod sweep;
 pub mod table_format;
 pub mod uncertainty;

@@ -12,8 +12,9 @@ use clap::Args;
 pub struct OwnArguments {
     #[command(flatten)]
     shared: Arguments,
-    /// Compare again whenever a scene's file (or a measured one) changes, until Ctrl-C, which ends with the status of the last
-    /// comparison. A file that is not valid is told of and waited for; of a plate without a reference the models run alone
+    /// Compare again whenever a scene file or measured file changes. An invalid file is reported and read again when
+    /// it changes. If a plate has no reference yet, only the models run. Ctrl-C ends with the status of the last
+    /// comparison
     #[arg(long, conflicts_with = "json")]
     watch: bool,
 }

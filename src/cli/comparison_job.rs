@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record};
 use crate::reference::{Resolution, Stored};
-use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
+use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport, Width};
 use crate::result::Outcome;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -282,7 +282,8 @@ impl<'a> Job<'a> {
             write_file(file, report::junit(report)?.as_bytes())?;
         }
         let comparison = report.comparison();
-        self.arguments.json.print(&comparison, |_| report::terminal(report))?;
+        let width = if self.arguments.wide { Width::Wide } else { Width::Narrow };
+        self.arguments.json.print(&comparison, |_| report::terminal(report, width))?;
         context.note(format_args!(
             "{} scene{} compared in {:.2} s; report: {}",
             self.scenes.len(),

@@ -20,23 +20,24 @@ use std::path::{Path, PathBuf};
 pub struct Arguments {
     #[command(flatten)]
     pub(super) compare: compare_arguments::Arguments,
-    /// Write the checks as JUnit XML to this file
+    /// Write JUnit XML to this file
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
-    /// Add the gated numbers, with the commit, to this file of results over commits (JSON lines)
+    /// Append the checked numbers, with the commit, to this file (JSON lines)
     #[arg(long, value_name = "FILE", conflicts_with = "trends")]
     record: Option<PathBuf>,
-    /// How quantities count whose verdict the reference's 95 % band leaves open: fail, warn (they pass, and are told) or pass
+    /// What to do with quantities that the reference's uncertainty leaves undecided: fail, warn (pass with a message)
+    /// or pass
     #[arg(long, default_value = "warn", value_name = "fail|warn|pass")]
     undecided: Undecided,
-    /// Let a scene fail of which nothing is gated, or whose reference has no value for a tolerance
+    /// Fail if a scene has no tolerances, or if the reference has no value for one
     #[arg(long)]
     require_tolerances: bool,
-    /// Change what fails in the scene files (known bias; bound of a residual) so that it passes, and accept the references as
-    /// they are; the reason is kept beside the scene file
+    /// Edit the scene files so that what fails passes (bias, bounds of residuals), and accept the present references.
+    /// The reason is stored next to the scene file
     #[arg(long, requires = "reason")]
     update: bool,
-    /// Why the change is right
+    /// Why the change is correct
     #[arg(long, value_name = "TEXT", requires = "update", value_parser = reason)]
     reason: Option<String>,
 }
@@ -118,7 +119,7 @@ fn tell_verdicts(job: &Job, report: &Report) {
                 lacking.join(", ")
             )),
             Verdict::Undecided => super::tell(format_args!(
-                "{word}: scene `{scene}` is undecided: the band of its reference leaves tolerances open; each such quantity says what would decide it"
+                "{word}: scene `{scene}` is undecided: the uncertainty of its reference is too large for some tolerances; see the lines above for what decides them"
             )),
             _ => {}
         }

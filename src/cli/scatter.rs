@@ -31,7 +31,8 @@ pub(super) fn scatter(
         if compared.is_none() && model != Model::C {
             continue;
         }
-        let counter = Counter::new(context, &format!("{}: scatter of model {name}", scene.name));
+        let counter =
+            Counter::new(context, &format!("{}: propagated input uncertainty, model {name}", scene.name));
         let request = Request {
             modes: compared.and_then(|summary| summary.modes),
             ..Request::new(model, SCATTER_ACCURACY)

@@ -71,8 +71,8 @@ impl BandVerdict {
     /// For people.
     pub fn words(self) -> &'static str {
         match self {
-            BandVerdict::Within => "within the band",
-            BandVerdict::Beyond => "beyond the band",
+            BandVerdict::Within => "within the uncertainty",
+            BandVerdict::Beyond => "beyond the uncertainty",
         }
     }
 }

@@ -111,7 +111,7 @@ pub fn compare(
     let ends = ContactEnds::of(&reference.summary)
         .ok_or_else(|| Error::Reference(format!("the reference of `{}`: {CUT}", scene.name)))?;
     let records = align_all(records, &model, ends, &approach, (bandwidth, speed))?;
-    let first = records.first().ok_or_else(|| Error::Usage("no measured file is given".into()))?;
+    let first = records.first().ok_or_else(|| Error::Usage("no measured file is specified".into()))?;
     let window = CommonAxis { end: window.end.min(first.time.last().copied().unwrap_or(0.0)), ..window };
     if window.end <= window.start {
         return Err(Error::Scene(miette::miette!(

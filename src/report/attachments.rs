@@ -1,10 +1,10 @@
 //! What a report shows besides the comparison, where there is any of it.
 
-use super::{Animation, kinds};
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
 use crate::coverage::Coverage;
 use crate::reference::{CurveBands, Dents, FieldMesh, MeshSection, Stored};
+use crate::report::{Animation, kinds};
 use crate::result::History;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -40,7 +40,7 @@ pub struct Attachments {
     pub trends: Vec<Trend>,
     /// Changes of tolerances and reference accepted so far, oldest first.
     pub acceptances: Vec<Acceptance>,
-    /// Scenes in which models were held against references, this one among them.
+    /// Scenes in which models were compared with references, this one among them.
     pub validated: Arc<[Validation]>,
     /// Which features of scenes are held against what.
     pub coverage: Option<Arc<Coverage>>,
@@ -56,7 +56,7 @@ pub struct Cost {
 }
 
 impl Attachments {
-    /// What the store has beside the numbers of a solution of `scene`. Meshes and fields that can't be drawn are left out.
+    /// What the store has beside the numbers of a solution of `scene`. Meshes and fields that can't be drawn are omitted.
     pub fn of(scene: &Scene, stored: &Stored) -> Self {
         let drawn = kinds::of(scene).attachments(stored);
         Attachments { bands: stored.bands.clone(), ..drawn }
@@ -64,7 +64,7 @@ impl Attachments {
 }
 
 /// When the curve called `name` is largest, s.
-pub(super) fn instant_of_peak(history: &History, name: &str) -> f64 {
+pub(crate) fn instant_of_peak(history: &History, name: &str) -> f64 {
     let values = history.time.iter().zip(history.curve(name).unwrap_or_default());
     values.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0.0, |(time, _)| *time)
 }

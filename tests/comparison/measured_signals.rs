@@ -187,7 +187,7 @@ fn one_signal_is_enough_and_missing_free_flight_is_told() {
     // 5 us of it, some fifty samples, are before the first touch, but the instrument smears the impact over all of them
     let said = error.to_string().replace('\u{2502}', " ").split_whitespace().collect::<Vec<_>>().join(" ");
     let (before, after) =
-        said.split_once(" samples before the first touch, ").unwrap_or_else(|| panic!("{said}"));
+        said.split_once(" samples before the first contact, ").unwrap_or_else(|| panic!("{said}"));
     let early: usize = before.rsplit(' ').next().unwrap().parse().unwrap();
     assert!((10..=100).contains(&early) && after.starts_with("0 of them"), "{said}");
     let cut = aligned(&part(&|t| t < 90e-6), &truth, &setup, Speed::Scene);

@@ -7,13 +7,13 @@ use impactcheck::body::continuum::{ContinuumPlate, MeshOptions, WEIGHTED, sphere
 use impactcheck::body::layer::Waves;
 use impactcheck::body::{bending, free_sphere, kirchhoff};
 use impactcheck::contact::{PatchTable, TABULATED};
+use impactcheck::evidence::study::auto;
+use impactcheck::evidence::study::{Cell, Study};
 use impactcheck::kinds::plate_impact::choice::{COVERAGE, integration_tolerance};
 use impactcheck::kinds::plate_impact::errors::largest_error;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::reference::Store;
 use impactcheck::scene::{Edge, Material, Model, Plate, Scene, resolve};
-use impactcheck::study::auto;
-use impactcheck::study::{Cell, Study};
 use serde_json::Value;
 
 const EDGES: [Edge; 3] = [Edge::Clamped, Edge::SimplySupported, Edge::Free];

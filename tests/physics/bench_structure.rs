@@ -1,6 +1,6 @@
 //! `impactcheck bench` on its smallest setting: what is run, that errors are measured and fall, and nothing of time.
 
-use impactcheck::bench::{OURS, Settings, WorkPrecision, figure, run};
+use impactcheck::evidence::bench::{OURS, Settings, WorkPrecision, figure, run};
 use impactcheck::reference::Store;
 
 #[test]

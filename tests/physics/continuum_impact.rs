@@ -6,10 +6,10 @@
 //! patch radius, the number of modes and the mesh.
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
+use impactcheck::evidence::study::{Verdict, insensitivity};
 use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::scene::{Model, Scene, resolve};
-use impactcheck::study::{Verdict, insensitivity};
 
 #[test]
 fn both_scenes_of_table_1_agree_with_converged_finite_elements() {

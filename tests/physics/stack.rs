@@ -9,11 +9,11 @@ use impactcheck::dynamics::MovingBody;
 use impactcheck::dynamics::integration::{Integration, Options};
 use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
+use impactcheck::evidence::study::actuators::STACK;
 use impactcheck::kinds::plate_impact::PlateImpact;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::numerics::duhamel::Oscillator;
 use impactcheck::scene::{Model, Scene, Shape};
-use impactcheck::study::actuators::STACK;
 
 const MODES: usize = 16;
 

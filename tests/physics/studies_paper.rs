@@ -1,7 +1,7 @@
 //! Parameter studies of the paper: Figs. 14 to 17 and the rule of section 4.1, as trends and numbers of the text.
 
+use impactcheck::evidence::study::{Cell, Settings, Study, Verdict, find, write};
 use impactcheck::scene::Model;
-use impactcheck::study::{Cell, Settings, Study, Verdict, find, write};
 
 /// The study, whose figure names the axes of all its panels.
 fn run(name: &str, model: Option<Model>) -> Study {

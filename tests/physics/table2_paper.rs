@@ -6,7 +6,7 @@
 
 use assert_cmd::Command;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions};
-use impactcheck::study::table2::{self, PAPER};
+use impactcheck::evidence::study::table2::{self, PAPER};
 use serde_json::Value;
 use std::f64::consts::TAU;
 

@@ -40,8 +40,11 @@ pub const ROUGH: f64 = 1e-4;
 /// Difference of velocities and force peaks that is in order, in tolerances.
 pub const ENOUGH: f64 = 10.0;
 
-/// Largest relative difference of the times of release, where strong damping lets forces die away slowly, and none of the numbers of contacts.
+/// Largest relative difference of the times of release, and none of the numbers of contacts, where these are uncertain while all else is
+/// known: strong damping lets forces die away slowly, or bodies part slowly.
 const RELEASED: f64 = 3e-4;
+/// Sensitivity of a time of release from which on bodies part slowly, see [`ContactLedger::end_sensitivity`]; of a half-sine it is 1/pi.
+const SLOW_SEPARATION: f64 = 5.0;
 
 /// Tolerance of the first solution over the error that all results may have ([`Options::results`]), and its least value. Of 3000 random
 /// impacts around Table 1 force peaks and times of separation then had up to 0.6 of that error.
@@ -128,8 +131,9 @@ fn repeated(
         if options.results.is_some() {
             change = larger(change, contacts);
         }
-        // a force that dies away slowly leaves its end open while all else is known
-        let released = options.results.is_some() || !is_strongly_damped(system) || contacts <= RELEASED;
+        let released = options.results.is_some()
+            || contacts <= RELEASED
+            || !(is_strongly_damped(system) || separates_slowly(&next));
         best = Integration { error_estimate: Some(change), ..next };
         let open = options.results.is_some() && is_countable(&best) && may_be_missed(&best, change);
         if (change <= enough && !open && released) || best.steps > LONG {
@@ -158,6 +162,11 @@ fn is_strongly_damped(system: &System) -> bool {
     system.oscillators.iter().any(|o| o.omega > 0.0 && o.alpha >= STRONG_DAMPING * o.omega)
 }
 
+/// Whether a small error of the motion is a large one of a time of release.
+fn separates_slowly(result: &Integration) -> bool {
+    result.contacts.iter().any(|contact| contact.end_sensitivity > SLOW_SEPARATION)
+}
+
 fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
     let [outer, inner] = &result.contacts;
     let bound = StepBounds::new(tolerance).force_defect;
@@ -170,6 +179,7 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
         && outer.contacts + inner.contacts <= FEW_TOUCHES
         && result.steps <= FEW_STEPS
         && result.contacts.iter().all(small)
+        && !separates_slowly(result)
         && (inner.contacts == 0 || inner.impulse >= FULL_SHARE * outer.impulse)
 }
 
@@ -181,6 +191,7 @@ fn is_clear(system: &System, result: &Integration, error: f64) -> bool {
         && outer.contacts + inner.contacts <= CLEAR_CONTACTS
         && result.steps <= CLEAR_STEPS
         && (inner.contacts == 0 || inner.impulse >= CLEAR_SHARE * outer.impulse)
+        && !separates_slowly(result)
         && result.contacts.iter().all(|contact| contact.least_turn > NEARLY_MISSED * error)
 }
 

@@ -80,6 +80,11 @@ pub fn horner(coefficients: &[f64], u: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * u + c)
 }
 
+/// Coefficients of the derivative of the polynomial with `coefficients`.
+pub fn derivative<const N: usize>(coefficients: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|p| coefficients.get(p + 1).map_or(0.0, |c| (p + 1) as f64 * c))
+}
+
 /// Newton's steps for a crossing at most.
 const MAX_CROSSING_STEPS: usize = 50;
 /// Change of a place in the step (0..1) at which a crossing is found: the next one is far below rounding errors.

@@ -1,6 +1,6 @@
 //! What is booked about one contact: impulse, peak force, touches and releases.
 
-use super::collocation::{Collocation, crossing};
+use super::collocation::{Collocation, crossing, derivative, horner};
 use super::system::dot;
 use crate::numerics::stages::{STAGES, Stages};
 
@@ -47,6 +47,8 @@ pub struct ContactLedger {
     pub least_turn: f64,
     /// Largest local approach so far, m.
     approach_peak: f64,
+    /// Relative change of [`ContactLedger::end`] for a change of the local approach, over its largest value: large where bodies part slowly.
+    pub end_sensitivity: f64,
     /// Latest change of the local approach in m, 0 where it is not known, and how long it took in s.
     change: (f64, f64),
 }
@@ -72,7 +74,7 @@ impl ContactLedger {
         self.work += work;
         self.force_peak = self.force_peak.max(last);
         let [start, end] = local_approach;
-        self.pass(end > 0.0, before, || time + h * start / (start - end));
+        self.pass(end > 0.0, before, || (time + h * start / (start - end), (start - end) / h));
     }
 
     /// Books a step.
@@ -85,7 +87,7 @@ impl ContactLedger {
             let place = course.local_approach[point - 1];
             let took = course.h * (collocation.points[point] - collocation.points[point - 1]);
             self.turn(place, (course.local_approach[point] - place, took));
-            let released = || course.time + course.h * release(collocation, course, point);
+            let released = || release(collocation, course, point);
             self.pass(course.local_approach[point] > 0.0, before, released);
         }
     }
@@ -119,9 +121,10 @@ impl ContactLedger {
         self.force_defect_sum += defect;
     }
 
-    /// Counts touches and releases; `before` is the impulse when the step began in N s, `released` gives the time of a release in s.
+    /// Counts touches and releases; `before` is the impulse when the step began in N s, `released` gives the time of a release in s, and the
+    /// rate of separation then in m/s.
     #[inline(always)]
-    fn pass(&mut self, closed: bool, before: f64, released: impl FnOnce() -> f64) {
+    fn pass(&mut self, closed: bool, before: f64, released: impl FnOnce() -> (f64, f64)) {
         if closed && !self.closed {
             self.contacts += 1;
             self.impulse_at_touch = before;
@@ -129,7 +132,9 @@ impl ContactLedger {
             if self.impulse - self.impulse_at_touch <= self.negligible {
                 self.contacts -= 1;
             } else {
-                self.end = released();
+                let (time, rate) = released();
+                self.end = time;
+                self.end_sensitivity = self.approach_peak / (rate * time).abs();
             }
         }
         self.closed = closed;
@@ -145,9 +150,10 @@ pub fn work<const P: usize>(collocation: &Collocation<P>, force: &Stages, approa
     end * approach[P - 1] - start * approach[0] - inside
 }
 
-/// Where in the step (0..1), before `point`, the local approach passes zero.
-fn release<const P: usize>(collocation: &Collocation<P>, course: &StepCourse<P>, point: usize) -> f64 {
+/// When before `point` the local approach passes zero, s, and how quickly, m/s.
+fn release<const P: usize>(collocation: &Collocation<P>, course: &StepCourse<P>, point: usize) -> (f64, f64) {
     let polynomial = collocation.through(&course.local_approach);
     let around = |values: &[f64; P]| [values[point - 1], values[point]];
-    crossing(&polynomial, around(&collocation.points), around(&course.local_approach))
+    let place = crossing(&polynomial, around(&collocation.points), around(&course.local_approach));
+    (course.time + course.h * place, horner(&derivative(&polynomial), place) / course.h)
 }

@@ -5,7 +5,7 @@
 //! exactly at any time, and as the forces' double integral it is far more exact than they are; what the contacts answer
 //! to it is the force whose peak is meant.
 
-use super::collocation::{Collocation, crossing, horner};
+use super::collocation::{Collocation, crossing, derivative, horner};
 use super::step_bounds::argmax;
 use super::system::{System, dot};
 
@@ -72,8 +72,7 @@ impl<const P: usize, M: Fn(f64) -> Motion> SolvedStep<'_, P, M> {
             _ => [points[highest - 1], points[highest + 1]],
         };
         let polynomial = self.collocation.through(&self.approach[contact]);
-        let slope: [f64; P] =
-            std::array::from_fn(|p| polynomial.get(p + 1).map_or(0.0, |c| (p + 1) as f64 * c));
+        let slope = derivative(&polynomial);
         let ends = [low, high];
         let guess = crossing(&slope, ends, ends.map(|u| horner(&slope, u))).clamp(low, high);
         let expected = horner(&polynomial, guess);

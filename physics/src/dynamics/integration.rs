@@ -2,6 +2,7 @@
 //! unexplained.
 
 use super::contact_ledger::ContactLedger;
+use super::driver::StopReason;
 use super::free_flight;
 use super::system::{PLATE, System};
 use crate::result::{History, Losses};
@@ -89,17 +90,10 @@ pub struct Integration {
     pub kept_tolerance: f64,
     /// What a stack took and gave, if the outer body is one.
     pub supplied: Option<Supplied>,
-    /// Whether the run ended with a stack that presses on a plate which the inner body has left for good.
-    pub pressed: bool,
+    /// Why the run ended.
+    pub stop: StopReason,
     /// Course over time, if asked for.
     pub history: Option<History>,
-}
-
-impl Integration {
-    /// Whether the run ended while bodies touched: what the impact comes to is then open.
-    pub fn is_cut(&self) -> bool {
-        self.contacts.iter().any(|contact| contact.closed) && !self.pressed
-    }
 }
 
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
@@ -201,7 +195,11 @@ impl Closing<'_> {
             converged: None,
             kept_tolerance: 0.0,
             supplied,
-            pressed,
+            stop: if pressed {
+                StopReason::Pressed
+            } else {
+                StopReason::of(contacts.iter().any(|c| c.closed))
+            },
             history,
         }
     }

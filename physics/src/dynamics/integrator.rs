@@ -7,28 +7,25 @@ use super::bank::in_blocks;
 use super::collocation::{Collocation, POINTS};
 use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse};
+use super::driver::{self, Stepper};
 use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
 use super::heating;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::ladder::Ladder;
 use super::recorder::Recorder;
-use super::step_bounds::{EnergyAccount, StepBounds, base_step, force_scale, momentum_scale};
+use super::step_bounds::{AdaptedLength, EnergyAccount, StepBounds, base_step, force_scale, momentum_scale};
 use super::system::{System, dot};
 use crate::error::{Error, Result};
 use crate::numerics::stages::{STAGES, Stages};
 use std::sync::LazyLock;
 use wide::f64x4;
 
-/// Steps after which a run counts as endless.
-const MAX_STEPS: u64 = 5_000_000;
 /// Contacts beyond which that is the impact's nature: a light plate that rattles between heavy bodies which close in on it.
 const RATTLING: u32 = 1000;
 /// Turn of the quickest vibration per step, rad, from which on the steps are no shorter than it needs: then a foil that trembles on a
 /// stiff contact, quicker than any of its modes, does so for too long.
 const TURN_PER_STEP: f64 = 0.1;
-/// Step lengths are the base length times 2^-level, level in this range.
-const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
 /// Share of a force's admissible defect at which the sweeps may end.
 const SETTLED: f64 = 0.1;
 /// Level of the first step after a touch.
@@ -42,7 +39,9 @@ const START_LEVEL: i32 = 4;
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     static COLLOCATION: LazyLock<Collocation> = LazyLock::new(Collocation::default);
     let recorder = Recorder::new(system, &COLLOCATION, options);
-    DryStepper::new(system, &COLLOCATION, options, recorder).go()
+    let mut stepper = DryStepper::new(system, &COLLOCATION, options, recorder);
+    driver::run(&mut stepper)?;
+    Ok(stepper.finish())
 }
 
 /// State of a run.
@@ -51,9 +50,8 @@ struct DryStepper<'a> {
     recorder: Option<Recorder<'a>>,
     end_time: f64,
     bounds: StepBounds,
-    base_step: f64,
+    length: AdaptedLength,
     tables: Ladder,
-    level: i32,
     time: f64,
     q: Vec<f64x4>,
     v: Vec<f64x4>,
@@ -89,11 +87,10 @@ impl<'a> DryStepper<'a> {
         Self {
             recorder,
             end_time: options.end_time.unwrap_or(f64::INFINITY),
-            base_step: base_step(hit.duration(), options.tolerance),
+            length: AdaptedLength::new(base_step(hit.duration(), options.tolerance), START_LEVEL),
             energy: EnergyAccount::new(&hit, system.kinetic_energy(), options.tolerance),
             bounds: StepBounds::new(options.tolerance),
             tables: Ladder::new(q.len()),
-            level: START_LEVEL,
             time: 0.0,
             next_q: q.clone(),
             next_v: v.clone(),
@@ -110,25 +107,6 @@ impl<'a> DryStepper<'a> {
             heat: options.heat.then_some(0.0),
             damped: system.is_damped(),
         }
-    }
-
-    fn go(mut self) -> Result<Integration> {
-        let mut touching = true;
-        while self.time < self.end_time {
-            let [approach, ..] = self.course.end();
-            if !touching
-                && approach[1] <= 0.0
-                && (self.only_presses() || approach[0] <= 0.0 && !self.fly()?)
-            {
-                break;
-            }
-            self.step()?;
-            touching = false;
-            if self.steps > MAX_STEPS {
-                return Err(self.endless());
-            }
-        }
-        Ok(self.finish())
     }
 
     /// Whether all that goes on is a stack that presses on the plate, in a run without an end.
@@ -169,7 +147,7 @@ impl<'a> DryStepper<'a> {
         }
         // exact flight keeps the energy of undamped bodies; of others it is not asked for
         self.course = at_rest(approach, self.course.motion);
-        self.level = self.level.max(START_LEVEL);
+        self.length.limit_to_level(START_LEVEL);
         Ok(more)
     }
 
@@ -179,12 +157,11 @@ impl<'a> DryStepper<'a> {
         let mut wanted = None;
         let mut solved = true;
         loop {
-            let (start, end) = (*LEVELS.start(), *LEVELS.end());
-            if self.level > end {
+            if self.length.is_exhausted() {
                 return Err(self.stuck(solved));
             }
-            self.level = self.level.max(start);
-            let h = self.base_step * 0.5_f64.powi(self.level);
+            self.length.limit();
+            let h = self.length.length();
             let rest = self.end_time - self.time;
             let shorter = wanted.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
             let (bank, collocation, system) =
@@ -194,7 +171,7 @@ impl<'a> DryStepper<'a> {
             let share = StepBounds::share(self.steps);
             let table = match shorter {
                 Some(h) => self.tables.other(bank, collocation, h),
-                None => self.tables.get(bank, collocation, self.level, h),
+                None => self.tables.get(bank, collocation, self.length.level(), h),
             };
             let h = table.h;
             let trial = self.solver.solve(
@@ -213,7 +190,7 @@ impl<'a> DryStepper<'a> {
             solved = trial.is_some();
             let Some(trial) = trial else {
                 wanted = None;
-                self.level += 1;
+                self.length.halve();
                 continue;
             };
             let energy_error = self.energy_error(&trial);
@@ -224,7 +201,7 @@ impl<'a> DryStepper<'a> {
                     Some(u) if wanted.is_none() => wanted = Some(u * h),
                     _ => {
                         wanted = None;
-                        self.level += (excess.log2() / (STAGES + 1) as f64).ceil().clamp(1.0, 8.0) as i32;
+                        self.length.shorten(excess);
                     }
                 }
                 continue;
@@ -234,9 +211,8 @@ impl<'a> DryStepper<'a> {
             }
             self.energy.book(energy_error);
             self.accept(trial)?;
-            // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
-            if excess < 0.5_f64.powi(STAGES as i32 + 2) && shorter.is_none() {
-                self.level -= 1;
+            if shorter.is_none() {
+                self.length.lengthen(excess);
             }
             return Ok(());
         }
@@ -245,22 +221,6 @@ impl<'a> DryStepper<'a> {
     /// Forces in N in relation to which those of a step have to be right at least, see [`force_scale`].
     fn least_forces(&self, scale: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| force_scale(&[], self.contacts[i].force_peak, scale[i], self.energy.contact_time))
-    }
-
-    /// That there is no end, and whether the integration or the impact itself is to blame for it.
-    fn endless(&self) -> Error {
-        let touches: u32 = self.contacts.iter().map(|contact| contact.contacts).sum();
-        let vibration = self.quickest_vibration();
-        let turned = vibration * self.time;
-        let sentence = format!(
-            "reduced model: no end after {MAX_STEPS} steps, {touches} contacts and {turned:.1e} rad of a vibration of {vibration:.1e} rad/s between the contacts, at t = {:.6e} s; set `run.end_time`, or take fewer modes",
-            self.time
-        );
-        if touches > RATTLING || turned > TURN_PER_STEP * self.steps as f64 {
-            Error::BeyondModel(sentence)
-        } else {
-            Error::Solver(sentence)
-        }
     }
 
     /// Angular frequency in rad/s of the bodies' quickest vibration while the contacts are as stiff as at their force peaks.
@@ -277,12 +237,12 @@ impl<'a> DryStepper<'a> {
         Error::Solver(if solved || self.solver.system.residual.is_none() {
             format!(
                 "reduced model: the time step fell below {:.1e} s at t = {:.6e} s without meeting the tolerance",
-                self.base_step * 0.5_f64.powi(*LEVELS.end()),
+                self.length.shortest(),
                 self.time
             )
         } else {
             format!(
-                "reduced model: at t = {:.6e} s, with contact forces of {outer:.4} N and {inner:.4} N, the contacts find no equilibrium: the residual flexibility of the modes that are left out does not hold for contact patches as wide as these; take fewer modes, or model B",
+                "reduced model: at t = {:.6e} s, with contact forces of {outer:.4} N and {inner:.4} N, the contacts find no equilibrium: the residual flexibility of the truncated modes is not valid for such large contact areas; take fewer modes, or model B",
                 self.time
             )
         })
@@ -377,6 +337,49 @@ impl<'a> DryStepper<'a> {
             heat: self.heat,
         };
         closing.integration(self.recorder.map(Recorder::finish))
+    }
+}
+
+impl Stepper for DryStepper<'_> {
+    const MOST_STEPS: u64 = 5_000_000;
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn end(&self) -> f64 {
+        self.end_time
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn advance(&mut self) -> Result<bool> {
+        let [approach, ..] = self.course.end();
+        let begun = self.steps > 0;
+        if begun && approach[1] <= 0.0 && (self.only_presses() || approach[0] <= 0.0 && !self.fly()?) {
+            return Ok(false);
+        }
+        self.step()?;
+        Ok(true)
+    }
+
+    /// Whether the integration or the impact itself is to blame.
+    fn endless(&self) -> Error {
+        let touches: u32 = self.contacts.iter().map(|contact| contact.contacts).sum();
+        let vibration = self.quickest_vibration();
+        let turned = vibration * self.time;
+        let sentence = format!(
+            "reduced model: no end after {} steps, {touches} contacts and {turned:.1e} rad of a vibration of {vibration:.1e} rad/s between the contacts, at t = {:.6e} s; set `run.end_time`, or take fewer modes",
+            Self::MOST_STEPS,
+            self.time
+        );
+        if touches > RATTLING || turned > TURN_PER_STEP * self.steps as f64 {
+            Error::BeyondModel(sentence)
+        } else {
+            Error::Solver(sentence)
+        }
     }
 }
 

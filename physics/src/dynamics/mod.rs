@@ -7,6 +7,7 @@ mod clearance;
 pub mod collocation;
 mod contact_forces;
 pub mod contact_ledger;
+pub(crate) mod driver;
 pub mod equations;
 mod force_peak;
 mod free_flight;
@@ -26,6 +27,7 @@ pub mod system;
 pub mod wet;
 
 pub use contact_ledger::ContactLedger;
+pub use driver::StopReason;
 pub use ledger_check::ledger_check;
 pub use moving_body::MovingBody;
 

@@ -3,6 +3,7 @@
 use super::contact_ledger::ContactLedger;
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
+use crate::numerics::stages::STAGES;
 
 /// Share of the impact's energy by which one step's rounding errors may change it.
 const ROUNDING: f64 = 1e-12;
@@ -19,6 +20,83 @@ const FLAT: f64 = 0.02;
 const PLAIN_TOLERANCE: f64 = 1e-7;
 /// Power of the tolerance with which steps of the collocation's order shorten.
 const STEP_POWER: f64 = 0.14;
+
+/// Step lengths are the base length times 2^-level, level in this range.
+const LEVELS: std::ops::RangeInclusive<i32> = -8..=44;
+
+/// Length of adapted steps.
+pub(super) struct AdaptedLength {
+    base: f64,
+    level: i32,
+}
+
+impl AdaptedLength {
+    /// `base` s times 2^-level.
+    pub(super) fn new(base: f64, level: i32) -> Self {
+        Self { base, level }
+    }
+
+    /// Length in s.
+    #[inline]
+    pub(super) fn length(&self) -> f64 {
+        self.base * 0.5_f64.powi(self.level)
+    }
+
+    /// Number of the length: tables are kept by it.
+    #[inline]
+    pub(super) fn level(&self) -> i32 {
+        self.level
+    }
+
+    /// Base length, s.
+    pub(super) fn base(&self) -> f64 {
+        self.base
+    }
+
+    /// Shortest length, s.
+    pub(super) fn shortest(&self) -> f64 {
+        self.base * 0.5_f64.powi(*LEVELS.end())
+    }
+
+    /// Whether the length is below the shortest.
+    #[inline]
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.level > *LEVELS.end()
+    }
+
+    /// Makes it no longer than the longest length.
+    #[inline]
+    pub(super) fn limit(&mut self) {
+        self.level = self.level.max(*LEVELS.start());
+    }
+
+    /// Halves the length.
+    #[inline]
+    pub(super) fn halve(&mut self) {
+        self.level += 1;
+    }
+
+    /// Makes it no longer than that of `level`.
+    #[inline]
+    pub(super) fn limit_to_level(&mut self, level: i32) {
+        self.level = self.level.max(level);
+    }
+
+    /// Shortens it for a step that is wrong by `excess` times what it may be.
+    #[inline]
+    pub(super) fn shorten(&mut self, excess: f64) {
+        self.level += (excess.log2() / (STAGES + 1) as f64).ceil().clamp(1.0, 8.0) as i32;
+    }
+
+    /// Doubles it after a step that was wrong by so small an `excess` that twice the length is in order: that multiplies the defect of
+    /// smooth forces by 2^(STAGES+1).
+    #[inline]
+    pub(super) fn lengthen(&mut self, excess: f64) {
+        if excess < 0.5_f64.powi(STAGES as i32 + 2) {
+            self.level -= 1;
+        }
+    }
+}
 
 /// Length in s of which steps are a power of 2, in an impact whose contact on a rigid wall lasts `contact_time` s. It follows the
 /// `tolerance`: else neighbouring ones could take the same steps, and their results would agree however wrong both are.

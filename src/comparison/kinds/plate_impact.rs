@@ -256,7 +256,7 @@ fn quantity_budget(
 fn switches(modes: ModeCounts) -> [String; CAUSES.len()] {
     let ModeCounts { b, c, many_kirchhoff, many_continuum } = modes;
     [
-        format!("model B as it stands → relative error {TIGHT:e}"),
+        format!("model B unchanged → relative error {TIGHT:e}"),
         format!("{b} → {many_kirchhoff} Kirchhoff modes"),
         format!("Kirchhoff plate → mean of both faces of the continuum plate ({c} modes and residual)"),
         "contact with half-spaces → contact with the plate, squeezed from both sides".into(),

@@ -17,7 +17,7 @@ impl super::Kind for Kind {
 
     fn starter(&self) -> Starter {
         Starter {
-            about: "A body strikes a plate, the plate passes the blow to a body behind it",
+            about: "A body strikes a plate, the plate transmits the impact to a body behind it",
             text: include_str!("starter.toml"),
         }
     }

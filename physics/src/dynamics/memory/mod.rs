@@ -19,6 +19,7 @@ use self::contact::Contact;
 use self::step_force::StepForce;
 use self::stepper::MemoryStepper;
 use super::assured::differences;
+use super::driver;
 use super::integration::{Converged, Integration, Options};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
@@ -29,8 +30,6 @@ use crate::scene::Spot;
 
 /// Steps of the first run per duration of the outer body's impact on a rigid wall.
 const FIRST_STEPS: f64 = 200.0;
-/// Steps after which a run counts as endless.
-const MAX_STEPS: u64 = 4_000_000;
 /// Springs of a viscoelastic contact across its radius in the first run, and their distance over that of the run before.
 const SPRINGS: f64 = 64.0;
 const FINER: f64 = 0.8;
@@ -209,7 +208,7 @@ impl Memory {
         let widest = self.bodies.contacts.iter().map(Contact::widest).fold(0.0, f64::max);
         (widest > WIDEST).then(|| {
             format!(
-                "a contact that yields is {widest:.2} of its tip radius wide; its law is for small strains and was compared with finite elements up to {WIDEST:.2}"
+                "a plastic contact has a radius of {widest:.2} tip radii; its law assumes small strains and was compared with finite elements up to {WIDEST:.2}"
             )
         })
     }
@@ -277,7 +276,7 @@ fn hardening_left_out(material: &Material, system: &System, hits: &[HertzImpact;
     let share = strain * plasticity.hardening / plasticity.yield_strength;
     (share > HARDENED).then(|| {
         format!(
-            "the contact law knows no hardening, but the yield stress of `{}` grows by about {:.0} % under the contacts",
+            "the contact law omits hardening, but the yield stress of `{}` grows by about {:.0} % under the contacts",
             material.name,
             100.0 * share
         )
@@ -292,11 +291,11 @@ fn overloaded(contacts: &[Contact; 2], hits: &[HertzImpact; 2]) -> Result<Option
     let overload = |i: usize| contacts[i].overload(hits[i].approach_peak());
     let overload = overload(0).max(overload(1));
     let told = format!(
-        "a contact approaches by about {overload:.1e} times what begins to yield; the law of a contact that yields was compared with finite elements up to {PROVEN_OVERLOAD} times"
+        "a contact reaches about {overload:.0} times the approach at first yield; the law of plastic contacts was compared with finite elements up to {PROVEN_OVERLOAD} times"
     );
     if overload > MOST_OVERLOAD {
         return Err(Error::Solver(format!(
-            "reduced model: {told}, and nothing is known beyond {MOST_OVERLOAD:.0e}; is `yield_strength` in the right unit?"
+            "reduced model: {told}, and it is refused beyond {MOST_OVERLOAD:.0}; is `yield_strength` in the right unit?"
         )));
     }
     Ok((overload > PROVEN_OVERLOAD).then_some(told))
@@ -334,7 +333,9 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
                 *contact = contact.with_springs_every(radius / SPRINGS * FINER.powi(halvings as i32));
             }
         }
-        MemoryStepper::new(system, bodies, &memory.plate, h, options).go(options.end_time)
+        let mut stepper = MemoryStepper::new(system, bodies, &memory.plate, h, options);
+        driver::run(&mut stepper)?;
+        Ok(stepper.finish())
     };
     let after = |ran: &Ran| Memory {
         bodies: CreepingContacts { contacts: ran.contacts.clone(), ..memory.bodies.clone() },

@@ -7,8 +7,9 @@ use super::bending::ForceHistory;
 use super::modes::ModeSet;
 use super::step_force::{StepForce, mean};
 use super::step_length::StepLength;
-use super::{CHANGE, CreepingContacts, MAX_STEPS, Ran};
+use super::{CHANGE, CreepingContacts, Ran};
 use crate::dynamics::contact_ledger::ContactLedger;
+use crate::dynamics::driver::{Stepper, StopReason};
 use crate::dynamics::integration::{FluidAccount, Integration, NEGLIGIBLE, Options, unexplained_momentum};
 use crate::dynamics::recorder::{CURVES, sample};
 use crate::dynamics::system::System;
@@ -22,6 +23,8 @@ const GRADED: f64 = 0.1;
 const FOLDS: f64 = 32.0;
 /// Steps after which a run looks for flights that only the bodies' speeds bound.
 const PATIENCE: u64 = 4096;
+/// Rounding error of the sum of all steps to the end, relative.
+const ROUNDING: f64 = 1e-12;
 /// Most doublings of a step in flight.
 const MAX_DOUBLINGS: usize = 40;
 
@@ -38,6 +41,7 @@ pub(super) struct MemoryStepper<'a> {
     /// Shortest step, s.
     h: f64,
     time: f64,
+    end_time: f64,
     steps: u64,
     /// When a contact had a force last, s.
     loaded: Option<f64>,
@@ -104,6 +108,7 @@ impl<'a> MemoryStepper<'a> {
             step_length: StepLength::new(h, system.hertz_impact().duration()),
             h,
             time: 0.0,
+            end_time: options.end_time.unwrap_or(f64::INFINITY),
             steps: 0,
             loaded: None,
             state: [start.clone(), start],
@@ -135,25 +140,8 @@ impl<'a> MemoryStepper<'a> {
         run
     }
 
-    /// Runs to `end_time` s, or until no further contact is possible.
-    pub(super) fn go(mut self, end_time: Option<f64>) -> Result<Ran> {
-        while end_time.map_or_else(|| !self.is_over(), |end| self.time < end * (1.0 - 1e-12)) {
-            match self.flight(end_time) {
-                0 => self.step(end_time.map_or(f64::INFINITY, |end| end - self.time))?,
-                doublings => self.fly(doublings),
-            }
-            if self.steps > MAX_STEPS {
-                return Err(Error::Solver(format!(
-                    "reduced model: no end after {MAX_STEPS} steps, at t = {:.6e} s; set `run.end_time`",
-                    self.time
-                )));
-            }
-        }
-        Ok(self.finish())
-    }
-
     /// Doublings of a step for which nothing can touch, and within which what recovers does so evenly.
-    fn flight(&self, end_time: Option<f64>) -> usize {
+    fn flight(&self) -> usize {
         if self.force != [0.0; 2] {
             return 0;
         }
@@ -166,8 +154,8 @@ impl<'a> MemoryStepper<'a> {
         let since = self.time - self.loaded.unwrap_or(0.0);
         let kept = self.sample_interval.max(since / self.samples_per_fold);
         let kept = self.history.as_ref().map_or(f64::INFINITY, |_| kept);
-        let end = end_time.map_or(f64::INFINITY, |end| end - self.time);
-        let steps = outer.min(inner).max(open).min(recovering).min(kept).min(end) / self.h * (1.0 + 1e-12);
+        let end = self.end_time - self.time;
+        let steps = outer.min(inner).max(open).min(recovering).min(kept).min(end) / self.h * (1.0 + ROUNDING);
         if steps < 2.0 { 0 } else { (steps.log2() as usize).min(MAX_DOUBLINGS) }
     }
 
@@ -363,7 +351,8 @@ impl<'a> MemoryStepper<'a> {
         history.push(self.time, sample(self.system, [&q, &v], local, self.force));
     }
 
-    fn finish(self) -> Ran {
+    /// The results.
+    pub(super) fn finish(self) -> Ran {
         let system = self.system;
         let [_, v] = self.modes[0].motion(&self.state[0]);
         let velocity = system.of_bodies(&v);
@@ -404,9 +393,36 @@ impl<'a> MemoryStepper<'a> {
             converged: None,
             kept_tolerance: CHANGE,
             supplied: None,
-            pressed: false,
+            stop: StopReason::of(self.contacts.iter().any(|contact| contact.closed)),
             history: self.history,
         };
         Ran { integration, contacts: self.bodies.contacts, loads: self.loads }
+    }
+}
+
+impl Stepper for MemoryStepper<'_> {
+    const MOST_STEPS: u64 = 4_000_000;
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn end(&self) -> f64 {
+        self.end_time * (1.0 - ROUNDING)
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn advance(&mut self) -> Result<bool> {
+        if self.end_time.is_infinite() && self.is_over() {
+            return Ok(false);
+        }
+        match self.flight() {
+            0 => self.step(self.end_time - self.time)?,
+            doublings => self.fly(doublings),
+        }
+        Ok(true)
     }
 }

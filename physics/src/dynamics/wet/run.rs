@@ -11,29 +11,26 @@ use super::solve::{END, Trial, Wet};
 use super::table::WetTable;
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS};
 use crate::dynamics::contact_ledger::{ContactLedger, StepCourse};
+use crate::dynamics::driver::{self, Stepper};
 use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
 use crate::dynamics::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::step_bounds::{EnergyAccount, StepBounds, base_step, momentum_scale};
+use crate::dynamics::step_bounds::{AdaptedLength, EnergyAccount, StepBounds, base_step, momentum_scale};
 use crate::dynamics::system::{System, dot};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::numerics::stages::{STAGES, Stages};
 use std::collections::BTreeMap;
 
-/// Steps after which a run counts as endless.
-const MAX_STEPS: u64 = 300_000;
 /// Steps that get nowhere: so many that advance by less than so much of the base length; and the same where the plate overlaps the inner body,
 /// however little: the film's law has a kink where that begins, at which steps don't settle.
 const STALLED: (u64, f64) = (1_000, 1e-6);
 const STALLED_IN_OVERLAP: f64 = 0.03;
 /// The same where the film encloses fluid, which can hardly get out.
 const STALLED_ENCLOSED: f64 = 1e-4;
-/// Step lengths are the base length times 2^-level, level from 0 to this.
-const LAST_LEVEL: i32 = 44;
-/// Longest step without a touch in sight, as a power of 2 of the base length.
-const LONGEST: i32 = -8;
+/// Level of the first step.
+const START_LEVEL: i32 = 8;
 
 /// Integrates the impact of `system` in a `fluid`.
 ///
@@ -59,9 +56,9 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         end_time: options.end_time.unwrap_or(f64::INFINITY),
         defect_bound: defect_bound(options.tolerance),
         bounds: StepBounds::new(options.tolerance),
-        base_step: base_step(hit.duration(), options.tolerance),
+        length: AdaptedLength::new(base_step(hit.duration(), options.tolerance), START_LEVEL),
         tables: BTreeMap::new(),
-        level: 8,
+        looked: 0.0,
         time: 0.0,
         approach: system.modal_approach(&q),
         local: system.modal_approach(&q),
@@ -76,7 +73,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         energy: EnergyAccount::new(&hit, system.kinetic_energy(), options.tolerance),
         steps: 0,
     };
-    stepper.go()?;
+    driver::run(&mut stepper)?;
     let closing = Closing {
         heat: None,
         system,
@@ -98,9 +95,10 @@ struct WetStepper<'a> {
     end_time: f64,
     defect_bound: f64,
     bounds: StepBounds,
-    base_step: f64,
+    length: AdaptedLength,
     tables: BTreeMap<i32, WetTable>,
-    level: i32,
+    /// When it was last looked whether the steps get anywhere, s.
+    looked: f64,
     time: f64,
     q: Vec<f64>,
     v: Vec<f64>,
@@ -118,64 +116,71 @@ struct WetStepper<'a> {
     steps: u64,
 }
 
-impl WetStepper<'_> {
-    fn go(&mut self) -> Result<()> {
-        let system = self.wet.system;
-        let mut touching = true;
-        let mut looked = self.time;
-        while self.time < self.end_time {
-            let open = !touching && is_open(self.approach);
-            let longest = if open {
-                // a step that passes no touch, or so short that one in it is found
-                let short = 0.5 * self.base_step.min(0.25 * self.energy.contact_time);
-                free_flight::safe_step(system, &self.q, &self.v).max(short)
-            } else {
-                self.base_step
-            };
-            if self.step(longest, open && self.end_time.is_infinite())? {
-                break;
-            }
-            touching = false;
-            let (steps, advance) = STALLED;
-            if self.steps.is_multiple_of(steps) {
-                let advanced = (self.time - looked) / self.base_step;
-                if advanced < advance {
-                    return Err(self.stalled(self.length(self.level)));
-                }
-                if advanced < STALLED_IN_OVERLAP {
-                    self.check_overlap(0.0, |_| true)?;
-                }
-                if advanced < STALLED_ENCLOSED {
-                    self.check_neck()?;
-                }
-                looked = self.time;
-            }
-            if self.steps > MAX_STEPS {
-                return Err(Error::Solver(format!(
-                    "reduced model: no end after {MAX_STEPS} steps, at t = {:.6e} s; set `run.end_time`",
-                    self.time
-                )));
-            }
-        }
-        Ok(())
+impl Stepper for WetStepper<'_> {
+    const MOST_STEPS: u64 = 300_000;
+
+    fn time(&self) -> f64 {
+        self.time
     }
 
-    fn length(&self, level: i32) -> f64 {
-        self.base_step * 0.5_f64.powi(level)
+    fn end(&self) -> f64 {
+        self.end_time
+    }
+
+    fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn advance(&mut self) -> Result<bool> {
+        let open = self.steps > 0 && is_open(self.approach);
+        let longest = if open {
+            // a step that passes no touch, or so short that one in it is found
+            let short = 0.5 * self.length.base().min(0.25 * self.energy.contact_time);
+            free_flight::safe_step(self.wet.system, &self.q, &self.v).max(short)
+        } else {
+            self.length.base()
+        };
+        if self.step(longest, open && self.end_time.is_infinite())? {
+            return Ok(false);
+        }
+        self.check_progress()?;
+        Ok(true)
+    }
+}
+
+impl WetStepper<'_> {
+    /// Looks now and then whether the steps get anywhere.
+    fn check_progress(&mut self) -> Result<()> {
+        let (steps, advance) = STALLED;
+        if !self.steps.is_multiple_of(steps) {
+            return Ok(());
+        }
+        let advanced = (self.time - self.looked) / self.length.base();
+        if advanced < advance {
+            return Err(self.stalled(self.length.length()));
+        }
+        if advanced < STALLED_IN_OVERLAP {
+            self.check_overlap(0.0, |_| true)?;
+        }
+        if advanced < STALLED_ENCLOSED {
+            self.check_neck()?;
+        }
+        self.looked = self.time;
+        Ok(())
     }
 
     /// Takes one step, as long as the tolerance and `longest` permit. If it `may_end` the run and no contact is possible
     /// after it, it ends at the instant from which that is so, and the answer is `true`.
     fn step(&mut self, longest: f64, may_end: bool) -> Result<bool> {
-        self.level = self.level.max(LONGEST);
-        while self.length(self.level) > longest {
-            self.level += 1;
+        self.length.limit();
+        while self.length.length() > longest {
+            self.length.halve();
         }
         loop {
-            if self.level > LAST_LEVEL {
-                return Err(self.stalled(self.length(LAST_LEVEL)));
+            if self.length.is_exhausted() {
+                return Err(self.stalled(self.length.shortest()));
             }
-            let (h, rest) = (self.length(self.level), self.end_time - self.time);
+            let (h, rest) = (self.length.length(), self.end_time - self.time);
             let start = (self.force, &self.load.force[..]);
             let scale = momentum_scale(self.wet.system, &self.contacts);
             let settled = self.settled(scale);
@@ -186,11 +191,13 @@ impl WetStepper<'_> {
                 last = WetTable::new(system, self.collocation, rest);
                 &last
             } else {
-                self.tables.entry(self.level).or_insert_with(|| WetTable::new(system, self.collocation, h))
+                self.tables
+                    .entry(self.length.level())
+                    .or_insert_with(|| WetTable::new(system, self.collocation, h))
             };
             let h = table.h;
             if !self.wet.solve(table, &self.q, &self.v, settled.in_step(h), &mut self.trial) {
-                self.level += 1;
+                self.length.halve();
                 continue;
             }
             let account = self.account(h);
@@ -200,13 +207,13 @@ impl WetStepper<'_> {
                 .max(self.force_excess(force_defect, scale))
                 .max(self.passed_touch(h, scale));
             if excess > 1.0 {
-                self.level += ((excess.log2() / (STAGES + 1) as f64).ceil() as i32).clamp(1, 8);
+                self.length.shorten(excess);
                 continue;
             }
             if may_end && let Some(end) = self.end_in_step(h) {
                 let table = WetTable::new(system, self.collocation, end);
                 if !self.wet.solve(&table, &self.q, &self.v, settled.in_step(end), &mut self.trial) {
-                    self.level += 1;
+                    self.length.halve();
                     continue;
                 }
                 self.accept(end, &self.account(end))?;
@@ -216,10 +223,7 @@ impl WetStepper<'_> {
             for (contact, defect) in self.contacts.iter_mut().zip(force_defect) {
                 contact.book_defect(defect);
             }
-            // one level up multiplies the defect of smooth forces by 2^(STAGES+1)
-            if excess < 0.5_f64.powi(STAGES as i32 + 2) {
-                self.level -= 1;
-            }
+            self.length.lengthen(excess);
             return Ok(false);
         }
     }

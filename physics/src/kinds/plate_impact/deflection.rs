@@ -33,7 +33,7 @@ pub fn deflection(
     }
     if setup.outer.offset > 0.0 {
         return Err(Error::Usage(format!(
-            "scene `{}` strikes its plate beside the centre: the deflection is no function of the radius",
+            "scene `{}` strikes its plate off-centre: the deflection is not axisymmetric",
             scene.name
         )));
     }

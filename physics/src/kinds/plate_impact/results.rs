@@ -1,5 +1,6 @@
 //! What the results of an impact through a plate are called, and the views of them that the kind itself works with.
 
+use crate::dynamics::StopReason;
 use crate::dynamics::integration::Integration;
 pub use crate::dynamics::recorder::CURVES;
 use crate::dynamics::system::System;
@@ -88,7 +89,7 @@ impl<'a> PlateCurves<'a> {
 /// # Errors
 /// [`Error::Solver`] if the run was cut during a contact.
 pub(super) fn quantities(system: &System, result: &Integration) -> Result<PlateQuantities> {
-    if result.is_cut() {
+    if result.stop == StopReason::Cut {
         Err(Error::Solver(format!("reduced model: {CUT}")))
     } else {
         Ok(values(system, result))

@@ -1,6 +1,7 @@
 //! One impact, or a series of them in which every one finds the dents of those before.
 
 use super::results::values;
+use crate::dynamics::StopReason;
 use crate::dynamics::assured::assured;
 use crate::dynamics::integrate;
 use crate::dynamics::integration::{Integration, Options};
@@ -65,7 +66,7 @@ impl Impacts<'_> {
         let left = self.plastic_work(&last) / self.system.kinetic_energy();
         let warning = (!self.has_shaken_down(&last)).then(|| {
             format!(
-                "the last of {} impacts still loses {left:.1e} of its energy to yielding: the series has not shaken down (below {SHAKEN_DOWN:.0e})",
+                "the last of {} impacts still dissipates {left:.1e} of its energy plastically: shakedown (below {SHAKEN_DOWN:.0e}) is not reached",
                 impacts.len()
             )
         });
@@ -105,7 +106,7 @@ impl Impacts<'_> {
         let sampled = if options.sample_interval.is_some() { *options } else { alone };
         let mut result = self.elastic(&sampled)?;
         let loads = result.history.as_ref().and_then(ForceHistory::of);
-        let loads = loads.ok_or_else(|| Error::Internal("a history was asked for".into()))?;
+        let loads = loads.ok_or_else(|| Error::Internal("a history was requested".into()))?;
         result.history = result.history.filter(|_| options.sample_interval.is_some());
         Ok((result, loads))
     }
@@ -114,7 +115,7 @@ impl Impacts<'_> {
     pub(super) fn elastic_efficiency(&self, options: &Options) -> Option<f64> {
         self.series?;
         self.memory.filter(|memory| memory.yields().contains(&true))?;
-        let result = self.elastic(options).ok().filter(|result| !result.is_cut())?;
+        let result = self.elastic(options).ok().filter(|result| result.stop != StopReason::Cut)?;
         values(self.system, &result).table().value("efficiency")
     }
 
@@ -129,7 +130,7 @@ impl Impacts<'_> {
             for _ in 0..MOST_RUNS {
                 let system = &self.system.at_speed(speed);
                 let (result, loads) = Impacts { system, ..*self }.loaded(options).ok()?;
-                if result.is_cut() {
+                if result.stop == StopReason::Cut {
                     return None;
                 }
                 let onset = onset.force(i, system, &loads)?;
@@ -147,7 +148,8 @@ impl Impacts<'_> {
     }
 
     fn has_shaken_down(&self, impact: &Integration) -> bool {
-        impact.is_cut() || self.plastic_work(impact) < SHAKEN_DOWN * self.system.kinetic_energy()
+        impact.stop == StopReason::Cut
+            || self.plastic_work(impact) < SHAKEN_DOWN * self.system.kinetic_energy()
     }
 
     /// Energy in J lost in contacts that yield.
@@ -161,8 +163,8 @@ impl Impacts<'_> {
         let table = values(self.system, impact).table();
         Impact {
             number,
-            quantities: if impact.is_cut() { table.cut() } else { table },
-            plastic_work: (!impact.is_cut()).then(|| self.plastic_work(impact)),
+            quantities: if impact.stop == StopReason::Cut { table.cut() } else { table },
+            plastic_work: (impact.stop != StopReason::Cut).then(|| self.plastic_work(impact)),
             locked_in_energy: None,
             uncertainty: BTreeMap::new(),
         }

@@ -160,7 +160,7 @@ fn warning(model: Model, modes: usize, lack: Lack, enough: Option<usize>) -> Str
     };
     let plural = if modes == 1 { "" } else { "s" };
     format!(
-        "model {model} with {modes} mode{plural}: the modes left out would change the result by an estimated {:.2} %{most}; {remedy}",
+        "model {model} with {modes} mode{plural}: modal truncation error about {:.2} %{most}; {remedy}",
         100.0 * lack.error
     )
 }

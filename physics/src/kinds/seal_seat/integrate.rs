@@ -14,11 +14,11 @@ use super::drift::Drift;
 use super::integration::{Integration, Sample, Tally};
 use super::system::{Forces, State, System, Workspace};
 use super::traces::Traces;
-use crate::error::{Error, Result};
+use crate::dynamics::StopReason;
+use crate::dynamics::driver::{self, Stepper};
+use crate::error::Result;
 use nalgebra::Vector3;
 
-/// Most time steps of a run.
-const MOST_STEPS: u64 = 2_000_000;
 /// Steps between two surveys of all candidates, and between two looks whether contact is still possible.
 const INTERVAL: u64 = 4;
 /// Gap below which an open candidate is watched until the next survey at least, over the actuator's way in between. Should
@@ -56,15 +56,7 @@ pub(super) fn integrate_from(system: &System, start: State, options: &Options) -
     run.workspace.survey(system, &run.state, run.margin());
     run.workspace.forces(system, &run.state, options.step, &mut run.forces)?;
     run.sample();
-    while !run.is_over() {
-        if run.tally.steps >= MOST_STEPS {
-            return Err(Error::Solver(format!(
-                "contact of the seal seat is still possible after {:e} s",
-                run.time()
-            )));
-        }
-        run.interval()?;
-    }
+    driver::run(&mut run)?;
     Ok(run.finish())
 }
 
@@ -110,10 +102,6 @@ impl<'a> SealSeatRun<'a> {
             },
             state,
         }
-    }
-
-    fn time(&self) -> f64 {
-        self.tally.steps as f64 * self.options.step
     }
 
     /// Steps to the next survey, again and with more candidates watched if one has been missed.
@@ -223,12 +211,9 @@ impl<'a> SealSeatRun<'a> {
         }
     }
 
-    /// Whether the end is reached, or no candidate can be met again: all contacts are open, and the straight flights of sphere and actuator
-    /// stay clear of every place that the modes' present amplitudes let the candidates reach.
+    /// Whether no candidate can be met again: all contacts are open, and the straight flights of sphere and actuator stay clear of every place
+    /// that the modes' present amplitudes let the candidates reach.
     fn is_over(&self) -> bool {
-        if let Some(end) = self.options.end_time {
-            return self.time() >= end - 0.5 * self.options.step;
-        }
         if self.tally.steps == 0 || !self.workspace.contact.active().is_empty() {
             return false;
         }
@@ -269,6 +254,7 @@ impl<'a> SealSeatRun<'a> {
             system.actuator_mass * state.actuator_velocity + system.sphere_mass * state.sphere_velocity[1];
         let energy = self.workspace.energy(system, state) + self.tally.modal_loss;
         Integration {
+            stop: StopReason::of(self.tally.before[0].iter().any(|force| *force > 0.0)),
             momentum_residual: (left + self.tally.seat_impulse - start).abs() / start,
             energy_residual: (energy - self.start_energy).abs() / self.start_energy,
             relaxed: 2.0 * (self.tally.modal_loss + self.workspace.contact.relaxed()),
@@ -278,6 +264,30 @@ impl<'a> SealSeatRun<'a> {
             tally: self.tally,
             samples: self.samples,
         }
+    }
+}
+
+impl Stepper for SealSeatRun<'_> {
+    const MOST_STEPS: u64 = 2_000_000;
+
+    fn time(&self) -> f64 {
+        self.tally.steps as f64 * self.options.step
+    }
+
+    fn end(&self) -> f64 {
+        self.options.end_time.map_or(f64::INFINITY, |end| end - 0.5 * self.options.step)
+    }
+
+    fn steps(&self) -> u64 {
+        self.tally.steps
+    }
+
+    fn advance(&mut self) -> Result<bool> {
+        if self.options.end_time.is_none() && self.is_over() {
+            return Ok(false);
+        }
+        self.interval()?;
+        Ok(true)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::contact::Work;
 use super::system::State;
+use crate::dynamics::StopReason;
 
 /// What is known at the end of a step; of whole bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,16 +44,11 @@ pub struct Tally {
     pub(super) before: [[f64; 2]; 2],
 }
 
-impl Integration {
-    /// Whether the run ended while bodies touched: what the impact comes to is then open.
-    pub fn is_cut(&self) -> bool {
-        self.tally.before[0].iter().any(|force| *force > 0.0)
-    }
-}
-
 /// Result of a run; of whole bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Integration {
+    /// Why the run ended.
+    pub stop: StopReason,
     /// State at the end.
     pub state: State,
     /// What was added up.

@@ -11,6 +11,7 @@ use super::results::{CURVES, SeatQuantities};
 use super::system::System;
 use super::truncation;
 use crate::body::cache::Cache;
+use crate::dynamics::StopReason;
 use crate::dynamics::ledger_check;
 use crate::error::{Error, Result};
 use crate::kinds::flight;
@@ -243,7 +244,7 @@ impl SeatModel {
     pub fn point(&self, tolerance: f64) -> Result<Point<SeatQuantities>> {
         let (result, _) = self.converged(tolerance)?;
         ledger_check(result.energy_residual, result.momentum_residual, tolerance)?;
-        if result.is_cut() {
+        if result.stop == StopReason::Cut {
             return Err(Error::Solver(CUT.into()));
         }
         Ok(Point {
@@ -263,7 +264,7 @@ impl SeatModel {
         let error = truncation::estimate(result, &self.integrate_of(&self.half, step, false)?);
         warnings.extend(truncation::warning(error, self.system.omega.len()));
         warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
-        if result.is_cut() {
+        if result.stop == StopReason::Cut {
             table = table.cut();
             warnings.push(CUT.into());
         }

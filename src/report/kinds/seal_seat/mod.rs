@@ -11,12 +11,13 @@ use crate::kinds::seal_seat::SeatQuantities;
 use crate::project::project_root;
 use crate::reference::Stored;
 use crate::report::attachments::instant_of_peak;
-use crate::report::figure_geometry::PanelOf;
-use crate::report::html::{named, scrolled};
+use crate::report::figure::geometry::PanelOf;
+use crate::report::page::html::{named, scrolled};
+use crate::report::page::section::Section;
+use crate::report::page::section::flight;
 use crate::report::run_times::marked;
-use crate::report::section::Section;
 use crate::report::summary_column::{SummaryColumn, degrees};
-use crate::report::{Attachments, SceneReport, Theme, flight_section};
+use crate::report::{Attachments, SceneReport, Theme};
 use crate::result::Summary;
 use crate::scene::Scene;
 use maud::{Markup, PreEscaped, html};
@@ -60,11 +61,14 @@ const PANELS: [PanelOf; 3] = [
 impl Presentation for Seat {
     fn columns(&self) -> &'static [SummaryColumn] {
         const COLUMNS: [SummaryColumn; 5] = [
-            SummaryColumn { is_angle: true, ..SummaryColumn::new("direction", "direction", "sphere_angle") },
-            SummaryColumn::new("speed", "speed", "sphere_speed"),
-            SummaryColumn::new("efficiency", "efficiency", "efficiency"),
-            SummaryColumn::new("sphere peak", "force peaks", "sphere_force_peak"),
-            SummaryColumn::new("actuator peak", "force peaks", "actuator_force_peak"),
+            SummaryColumn {
+                is_angle: true,
+                ..SummaryColumn::new("direction", "", "direction of the sphere", "sphere_angle")
+            },
+            SummaryColumn::new("speed", "", "speed of the sphere", "sphere_speed"),
+            SummaryColumn::new("efficiency", "", "efficiency", "efficiency"),
+            SummaryColumn::new("peak force", "sphere", "peak force on the sphere", "sphere_force_peak"),
+            SummaryColumn::new("peak force", "actuator", "peak force on the actuator", "actuator_force_peak"),
         ];
         &COLUMNS
     }
@@ -114,7 +118,7 @@ impl Presentation for Seat {
     fn sections(&self, report: &SceneReport) -> Vec<Section> {
         vec![
             Section::new("flight", "Flight of the sphere", flight(report)),
-            Section::new("landing", "Landing", flight_section::flights_html(report)),
+            Section::new("landing", "Landing", flight::flights_html(report)),
             Section::new("cost", "Cost", cost(report)),
         ]
     }

@@ -1,6 +1,7 @@
 //! Runs of a reduced model, and what they come to.
 
 use super::{Point, Reduced};
+use crate::dynamics::StopReason;
 use crate::dynamics::assured;
 use crate::dynamics::contact_ledger::ContactLedger;
 use crate::dynamics::integration::{Converged, Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
@@ -157,7 +158,7 @@ impl Reduced {
         let options = Options { sample_interval, samples_between, converged, ..self.options(tolerance) };
         let record = |options: &Options| -> Result<_> {
             let (result, _) = self.impacts().one(options, memory.as_ref())?;
-            result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))
+            result.history.ok_or_else(|| Error::Internal("a history was requested".into()))
         };
         let mut history = record(&options)?;
         if options.end_time.is_none() && history.time.last().is_some_and(|last| *last < end) {
@@ -192,7 +193,7 @@ impl Reduced {
         warnings.extend(self.warnings.iter().cloned());
         warnings.extend(truncation.warning);
         if setup.friction > 0.0 {
-            warnings.push("friction is left out: Hertz's contact is smooth; the reference has it".into());
+            warnings.push("friction is omitted by the reduced models; the reference includes it".into());
         }
         warnings.extend(film_warning(result.losses.squeeze_film, system));
         warnings.extend(unsure.map(|error| {
@@ -203,7 +204,7 @@ impl Reduced {
         if let (Some(memory), true) = (&self.memory, even_steps) {
             warnings.extend(memory.warnings.iter().cloned());
             warnings.extend(result.error_estimate.filter(|error| *error > memory::CHANGE / 3.0).map(|error| {
-                format!("velocities and force peaks are uncertain by {error:.0e}: neither shorter steps nor what the plate's bending changes have settled")
+                format!("velocities and peak forces are uncertain by {error:.0e}: step length and bending of the plate have not converged")
             }));
         }
         if let (Shape::Bender(bender), Some(drive)) = (&setup.outer.shape, system.drive) {
@@ -220,9 +221,9 @@ impl Reduced {
                 continue;
             }
             warnings.push(match contact.force_peak > 0.0 {
-                false => format!("the {body} body and the plate never touch"),
+                false => format!("the {body} body and the plate are never in contact"),
                 true => format!(
-                    "the {body} body and the plate touch with an impulse of {:.1e} N s, below {NEGLIGIBLE:.0e} of the outer body's momentum: it does not count as a contact",
+                    "the {body} body and the plate are in contact with an impulse of {:.1e} N s, below {NEGLIGIBLE:.0e} of the outer body's momentum: it does not count as a contact",
                     contact.impulse
                 ),
             });
@@ -232,19 +233,21 @@ impl Reduced {
         warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if self.scene.plate_impact()?.outer.angle != 0.0 {
             warnings.push(
-                "motion along the plate is left out: the velocity along its normal alone counts; the reference has both".into(),
+                "motion along the plate is omitted by the reduced models; the reference includes it".into(),
             );
         }
         let values = self.of_all_energy(values(system, result));
         let mut table = values.table();
-        if result.is_cut() {
+        if result.stop == StopReason::Cut {
             table = table.cut();
             warnings.push(CUT.into());
         }
         if system.stack.is_some() {
             // eq. (1) relates to a kinetic energy before the impact, and the tip vibrates on
             let open = ["efficiency", "outer_velocity_final"].into_iter();
-            let pressing = ["outer_contact_end", "outer_contacts"].into_iter().filter(|_| result.pressed);
+            let pressing = ["outer_contact_end", "outer_contacts"]
+                .into_iter()
+                .filter(|_| result.stop == StopReason::Pressed);
             for name in open.chain(pressing) {
                 table.value_mut(name).into_iter().for_each(|value| *value = None);
             }
@@ -259,14 +262,17 @@ impl Reduced {
             bender: system.drive.map(|drive| {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
                 let efficiency = transmitted / drive.strain_energy;
-                BenderSummary { strain_energy_efficiency: (!result.is_cut()).then_some(efficiency), drive }
+                BenderSummary {
+                    strain_energy_efficiency: (result.stop != StopReason::Cut).then_some(efficiency),
+                    drive,
+                }
             }),
             stack: result.supplied.map(|supplied| {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
                 StackSummary {
                     electrical_energy: supplied.taken,
                     mechanical_energy: supplied.given,
-                    share: (!result.is_cut()).then_some(transmitted / supplied.taken),
+                    share: (result.stop != StopReason::Cut).then_some(transmitted / supplied.taken),
                 }
             }),
             losses: (system.is_damped() && system.stack.is_none()

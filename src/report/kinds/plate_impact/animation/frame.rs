@@ -1,13 +1,13 @@
 //! One frame of an animation as a drawing; the field of its left half is filled in afterwards.
 
 use super::stage::{Stage, WIDTH};
-use crate::report::colours::{BODIES, hex};
-use crate::report::field_raster::cividis;
-use crate::report::figure_geometry::x2;
-use crate::report::plot_axis::{Plot, PlotAxis};
-use crate::report::polyline::path;
-use crate::report::scene_drawing::DrawingScale;
-use crate::report::ticks::{tick_label, ticks};
+use crate::plot::axis::{Plot, PlotAxis};
+use crate::plot::colours::cividis;
+use crate::plot::colours::{BODIES, hex};
+use crate::plot::polyline::path;
+use crate::plot::svg::x2;
+use crate::plot::ticks::{tick_label, ticks};
+use crate::report::figure::scene_drawing::DrawingScale;
 use crate::scene::Shape;
 use maud::{Markup, PreEscaped, html};
 

@@ -7,8 +7,8 @@ mod stage;
 
 use crate::error::{Error, Result};
 use crate::movement::Movement;
+use crate::plot::png::raster;
 use crate::report::attachments::instant_of_peak;
-use crate::report::png::raster;
 use crate::result::Outcome;
 use crate::scene::Scene;
 use palette::Palette;
@@ -194,7 +194,7 @@ mod tests {
         let highest = |k: usize, share: f64, colour: [u8; 3]| {
             *rows(&shown[k], size, share, |c| near(c, colour)).first().expect("the plate is there") as f64
         };
-        let stress = |k: usize| crate::report::field_raster::cividis(k as f64 / (FRAMES - 1) as f64);
+        let stress = |k: usize| crate::plot::colours::cividis(k as f64 / (FRAMES - 1) as f64);
         let rise = highest(0, 0.2, stress(0)) - highest(FRAMES - 1, 0.2, stress(FRAMES - 1));
         assert!((rise - expected).abs() <= 2.0, "the reference rises by {rise}, expected {expected}");
         let plate = [226, 226, 220];

@@ -2,8 +2,8 @@
 
 use super::AnimationFrame;
 use crate::error::{Error, Result};
-use crate::report::colours::{BODIES, MODELS};
-use crate::report::field_raster::cividis;
+use crate::plot::colours::cividis;
+use crate::plot::colours::{BODIES, MODELS};
 use std::collections::HashMap;
 
 /// Colours of the field, from its lowest to its highest value.

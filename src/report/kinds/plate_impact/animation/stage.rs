@@ -6,10 +6,10 @@ use crate::error::Result;
 use crate::format::{minus, model_name};
 use crate::kinds::plate_impact::PlateImpact;
 use crate::movement::Movement;
+use crate::plot::colours::{hex, of_model};
+use crate::plot::raster::{QuadMesh, Raster, View};
+use crate::plot::ticks::round_below;
 use crate::reference::FieldMesh;
-use crate::report::colours::{hex, of_model};
-use crate::report::field_raster::{Raster, View};
-use crate::report::ticks::round_below;
 use crate::result::Outcome;
 use crate::scene::Scene;
 
@@ -80,7 +80,9 @@ impl<'a> Stage<'a> {
         let largest = displacements.fold(0.0, f64::max);
         let room = LARGEST * (view.high - view.low);
         let within = |mesh: &FieldMesh| {
-            mesh.von_mises.as_ref().map_or(0.0, |values| Raster::within(mesh, values, SHARE, view, PICTURE))
+            mesh.von_mises
+                .as_ref()
+                .map_or(0.0, |values| Raster::within(mesh.into(), values, SHARE, view, PICTURE))
         };
         let model = reduced.summary.model.as_deref().unwrap_or_default();
         Ok(Stage {
@@ -107,10 +109,10 @@ impl<'a> Stage<'a> {
         let mesh = self.movement.fields.get(k)?;
         let (stress, moved) = (mesh.von_mises.as_ref()?, mesh.displacement.as_ref()?);
         let place = |(p, u): (&[f64; 2], &[f64; 2])| [0, 1].map(|c| p[c] + self.exaggeration * u[c]);
-        let points = mesh.points.iter().zip(moved).map(place).collect();
-        let mesh = FieldMesh { points, displacement: None, von_mises: None, ..mesh.clone() };
+        let points: Vec<[f64; 2]> = mesh.points.iter().zip(moved).map(place).collect();
+        let mesh = QuadMesh { points: &points, quads: &mesh.quads, bodies: &mesh.bodies };
         let width = (PICTURE as f64 * SCALE) as usize * SAMPLES;
-        Some(Placed(Raster::field(&mesh, stress, self.largest, self.view, width)))
+        Some(Placed(Raster::field(mesh, stress, self.largest, self.view, width)))
     }
 
     /// How large displacements are drawn, in words.
