@@ -153,7 +153,11 @@ impl<'a> Job<'a> {
 
     /// The finished comparisons of all scenes.
     pub(super) fn comparisons(&self, context: &Context, results: &[Results]) -> Result<Vec<SceneComparison>> {
-        self.scenes.iter().zip(results).map(|(scene, results)| self.compared(context, scene, results)).collect()
+        self.scenes
+            .iter()
+            .zip(results)
+            .map(|(scene, results)| self.compared(context, scene, results))
+            .collect()
     }
 
     fn compared(

@@ -46,10 +46,8 @@ pub struct Arguments {
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let job = Job::read(context, &arguments.compare)?;
     job.check_folders(&[arguments.junit.as_ref(), arguments.record.as_ref()])?;
-    let record = match &arguments.record {
-        Some(file) => Some((file.clone(), commit(&job, file)?)),
-        None => None,
-    };
+    let at_commit = |file: &PathBuf| Ok((file.clone(), commit(&job, file)?));
+    let record = arguments.record.as_ref().map(at_commit).transpose()?;
     let results = job.results(context)?;
     let rules =
         GateRules { undecided: arguments.undecided, require_tolerances: arguments.require_tolerances };
@@ -75,9 +73,11 @@ fn conclude(
     let entries = job.trends(&comparisons, record)?;
     let report = Report { rules, ..job.report(context, results, comparisons, &entries)? };
     tell_verdicts(job, &report);
-    for changed in report.changed_tolerances() {
-        // not a note: --quiet must not hide that the gate is another one
-        super::tell(format_args!("warning: {changed}"));
+    for SceneComparison { scene, changed_tolerances, .. } in report.scenes.iter().map(|s| &s.comparison) {
+        for changed in changed_tolerances {
+            // not a note: --quiet must not hide that the gate is another one
+            super::tell(format_args!("warning: {scene}: {}", changed.sentence()));
+        }
     }
     if github::is_running() {
         tell_github(context, job, &report)?;
@@ -182,12 +182,7 @@ struct SceneUpdate {
 
 impl SceneUpdate {
     /// The change that makes `comparison` pass, checked, not yet made.
-    fn of(
-        file: &Path,
-        comparison: &SceneComparison,
-        resolution: Resolution,
-        reason: &str,
-    ) -> Result<Self> {
+    fn of(file: &Path, comparison: &SceneComparison, resolution: Resolution, reason: &str) -> Result<Self> {
         acceptable(comparison)?;
         let old = std::fs::read_to_string(file).map_err(|e| Error::io("reading", file, e))?;
         let (text, tolerances) = tolerance_edit::edited(&old, comparison)?;

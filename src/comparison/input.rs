@@ -9,8 +9,8 @@ use crate::curves::{CommonAxis, CurveMetrics, align};
 use crate::measured::Measured;
 use crate::result::{FlightSummary, Outcome, Summary};
 use crate::scene::{Scene, Tolerances};
-use crate::uncertainty::validation::{self, Assessment, numerical, scatter_of};
 use crate::uncertainty::Scatter;
+use crate::uncertainty::validation::{self, Assessment, numerical, scatter_of};
 use std::collections::BTreeMap;
 
 /// Everything that the comparison of one scene is made of: scene, reference and reduced models, and what else is known.
@@ -111,8 +111,7 @@ impl Comparator<'_> {
         let mut integrity = integrity::check(scene, reduced);
         // of a program that has failed nothing can be compared, which its checks say
         if summary.failure.is_none() {
-            aligned =
-                self.window.map_or_else(Vec::new, |w| align(w, &reference.history, &reduced.history));
+            aligned = self.window.map_or_else(Vec::new, |w| align(w, &reference.history, &reduced.history));
             let rows = rows(scene, (reference, self.flight), reduced, &aligned, tolerances).into_iter();
             discrepancies = rows.map(|row| self.judged(row, &summary)).collect();
             integrity.push(integrity::same_impact(&reference.summary, &summary));
@@ -133,7 +132,8 @@ impl Comparator<'_> {
     /// The row with its final band and verdict, and what uncertain inputs leave open of it.
     fn judged(&self, row: Discrepancy, reduced: &Summary) -> Discrepancy {
         let model = reduced.model.as_deref().unwrap_or_default();
-        let before = self.coarser.as_ref().and_then(|coarser| coarser.model(model)?.discrepancy(&row.quantity));
+        let before =
+            self.coarser.as_ref().and_then(|coarser| coarser.model(model)?.discrepancy(&row.quantity));
         let row = row.on_common_mesh(before);
         let validation = scatter_of(&self.input.scatters, model).and_then(|scatter| {
             let sides =

@@ -211,7 +211,10 @@ mod tests {
         places.sort_by(f64::total_cmp);
         places.dedup();
         let &[.., first, beyond, last] = &places[..] else { panic!("{places:?}") };
-        assert!(((beyond - first) / (last - beyond) - 2.0).abs() < 1e-3, "the marks of 1, 3 and 4: {places:?}");
+        assert!(
+            ((beyond - first) / (last - beyond) - 2.0).abs() < 1e-3,
+            "the marks of 1, 3 and 4: {places:?}"
+        );
         let lines = document.descendants().filter_map(|n| n.attribute("d"));
         let reaches = |line: &&str, x: f64| line.contains(&format!("{x:.2} "));
         let beyond_the_gap: Vec<&str> = lines.filter(|line| reaches(line, last)).collect();

@@ -207,7 +207,8 @@ fn models_are_measured_by_the_same_metrics_and_a_series_by_mean_and_scatter() {
     // another program's result has no eigenfrequency
     let mut imported = reference.clone();
     *imported.summary.quantities.value_mut("first_frequency").unwrap() = None;
-    let with_imported = compare(&scene, &records, &imported, &[], (BANDWIDTH, Speed::Scene), &certain).unwrap();
+    let with_imported =
+        compare(&scene, &records, &imported, &[], (BANDWIDTH, Speed::Scene), &certain).unwrap();
     assert_eq!(with_imported.records, found.records);
     let series = found.efficiency.unwrap();
     assert_eq!(series, Series::of(series.values.clone()).unwrap());

@@ -58,5 +58,7 @@ fn errors_of_every_integrator_fall_with_its_tolerance_and_ratios_follow_from_the
         assert_eq!(largest > 0.02, series.model == "B", "{series:?}");
     }
     let drawn = figure(&bench);
-    assert!(bench.work_precision.iter().all(|run| drawn.contains(&run.solver) && drawn.contains(&run.problem)));
+    assert!(
+        bench.work_precision.iter().all(|run| drawn.contains(&run.solver) && drawn.contains(&run.problem))
+    );
 }

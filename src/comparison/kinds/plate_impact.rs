@@ -33,7 +33,7 @@ use crate::comparison::Verdict;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
 use crate::result::{CUT, Outcome, Summary};
-use crate::scene::{Model, Scene};
+use crate::scene::Scene;
 use serde::Serialize;
 
 /// The quantities of the budget.
@@ -125,14 +125,12 @@ struct ModeCounts {
 /// # Errors
 /// As [`budget`].
 pub fn of_results(scene: &Scene, reference: &Summary, reduced: &[Outcome]) -> Result<Vec<QuantityBudget>> {
-    let summary = |model: Model| {
-        let name = model.to_string();
-        reduced.iter().map(|outcome| &outcome.summary).find(|summary| summary.model.as_ref() == Some(&name))
+    let summary = |name: &str| {
+        let mut summaries = reduced.iter().map(|outcome| &outcome.summary);
+        summaries.find(|summary| summary.model.as_deref() == Some(name))
     };
-    match (summary(Model::B), summary(Model::C)) {
-        (Some(b), Some(c)) => budget(scene, reference, b, c),
-        _ => Ok(Vec::new()),
-    }
+    let pair = summary("B").zip(summary("C"));
+    pair.map_or(Ok(Vec::new()), |(b, c)| budget(scene, reference, b, c))
 }
 
 /// The budget of the difference between model `b` and `reference`; `c` is model C's result for the same scene.
