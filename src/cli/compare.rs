@@ -1,7 +1,7 @@
 //! `impactcheck compare`: the main job, scene to verdict.
 
 use super::compare_arguments::Arguments;
-use super::comparison_job::{Job, Outputs};
+use super::comparison_job::Job;
 use super::{Context, compare_inputs, kinds};
 use crate::error::{Error, ExitStatus, Result};
 use crate::report;
@@ -51,7 +51,10 @@ fn once(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let job = Job::read(context, arguments)?;
     job.check_folders(&[])?;
     let results = job.results(context)?;
-    let comparison = job.finish(context, job.report(context, &results)?, &Outputs::default())?;
+    let comparisons = job.comparisons(context, &results)?;
+    let entries = job.trends(&comparisons, None)?;
+    let report = job.report(context, &results, comparisons, &entries)?;
+    let comparison = job.finish(context, &report, None)?;
     Ok(match comparison.lacks_a_result() {
         true => ExitStatus::Solver,
         false if job.refuses(&comparison) => ExitStatus::ToleranceExceeded,

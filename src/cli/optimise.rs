@@ -169,8 +169,8 @@ fn verify(
     let scene = problem.scene(&optimum.values())?;
     let stored = reference_of(context, arguments, &scene)?;
     let outcome = problem.outcome(&optimum.values())?;
-    let mut comparison = compare_scene(&scene, &stored.outcome, &[outcome]);
-    let model = comparison.models.pop().ok_or_else(|| Error::Internal("one model was compared".into()))?;
+    let model = compare_scene(&scene, &stored.outcome, &[outcome]).models.pop();
+    let model = model.ok_or_else(|| Error::Internal("one model was compared".into()))?;
     Ok(Verification {
         verdict: model.verdict.name(),
         missing: None,

@@ -8,12 +8,9 @@ use crate::result::Summary;
 /// Smallest relative band that a reference can be asked for.
 const SMALLEST_TARGET: f64 = 1e-4;
 
-/// Says of every undecided row what would decide it.
-pub(super) fn tell(rows: &mut [Discrepancy], reference: &Summary) {
-    let reached = targeted_band(reference);
-    for row in rows {
-        row.would_decide = (row.verdict == Verdict::Undecided).then(|| sentence(row, reached)).flatten();
-    }
+/// What would decide `row` if it is undecided.
+pub(super) fn advice(row: &Discrepancy, reference: &Summary) -> Option<String> {
+    (row.verdict == Verdict::Undecided).then(|| sentence(row, targeted_band(reference))).flatten()
 }
 
 /// Largest relative band of what `--target-error` is about: efficiency and force peaks.

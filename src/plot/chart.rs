@@ -186,6 +186,7 @@ fn draw(panel: &ChartPanel, page: f64, top: f64) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use resvg::usvg::roxmltree::Document;
 
     #[test]
     fn every_series_is_drawn_and_named_and_the_picture_can_be_rastered() {
@@ -204,8 +205,21 @@ mod tests {
             ..ChartPanel::default()
         };
         let svg = chart("example", &[panel.clone(), panel]);
-        assert_eq!(svg.matches("<path").count(), 1 + 2, "legend, and in both panels what is beyond the gap");
-        assert_eq!(svg.matches("<circle").count(), 1 + 2 * (1 + 3), "and what is alone before it");
+        let document = Document::parse(&svg).expect("XML");
+        let mut places: Vec<f64> =
+            document.descendants().filter_map(|n| n.attribute("cx")?.parse().ok()).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        let &[.., first, beyond, last] = &places[..] else { panic!("{places:?}") };
+        assert!(
+            ((beyond - first) / (last - beyond) - 2.0).abs() < 1e-3,
+            "the marks of 1, 3 and 4: {places:?}"
+        );
+        let lines = document.descendants().filter_map(|n| n.attribute("d"));
+        let reaches = |line: &&str, x: f64| line.contains(&format!("{x:.2} "));
+        let beyond_the_gap: Vec<&str> = lines.filter(|line| reaches(line, last)).collect();
+        assert_eq!(beyond_the_gap.len(), 2, "one in each panel");
+        assert!(beyond_the_gap.iter().all(|line| reaches(line, beyond) && !reaches(line, first)), "{svg}");
         assert!(svg.contains("a &lt; b") && svg.contains("Radius in mm") && !svg.contains("NaN"), "{svg}");
         assert!(!svg.contains(">1.5<") && svg.contains(">3<"), "whole numbers only: {svg}");
         assert!(crate::plot::png(&svg, 1.0).expect("PNG").starts_with(b"\x89PNG"));

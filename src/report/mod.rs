@@ -41,7 +41,7 @@ pub use page::section::measured::efficiency_figure;
 pub use terminal::{Width, alone, terminal};
 pub use write::{check_writable, write};
 
-use crate::comparison::{ChangedTolerance, Comparison, GateRules, SceneComparison};
+use crate::comparison::{Comparison, GateRules, SceneComparison};
 use crate::coverage::Coverage;
 use crate::result::Outcome;
 use crate::scene::Scene;
@@ -89,16 +89,5 @@ impl Report<'_> {
     /// Which features of scenes are held against what, if that is known.
     fn coverage(&self) -> Option<&Coverage> {
         self.scenes.first().and_then(|scene| scene.attachments.coverage.as_deref())
-    }
-
-    /// A sentence per tolerance that was changed since it was accepted.
-    pub fn changed_tolerances(&self) -> impl Iterator<Item = String> {
-        let sentences = |scene: &SceneReport| {
-            let comparison = &scene.comparison;
-            let sentence =
-                |changed: &ChangedTolerance| format!("{}: {}", comparison.scene, changed.sentence());
-            comparison.changed_tolerances.iter().map(sentence).collect::<Vec<_>>()
-        };
-        self.scenes.iter().flat_map(sentences)
     }
 }

@@ -202,11 +202,13 @@ fn models_are_measured_by_the_same_metrics_and_a_series_by_mean_and_scatter() {
         .map(|seed| record(&truth, &SIGNALS, Disturbance { seed, noise: 0.002, ..DISTURBED }))
         .collect();
     let reduced = [model(&scene, Model::A), model(&scene, Model::C)];
-    let found = compare(&scene, &records, &reference, &reduced, (BANDWIDTH, Speed::Scene)).unwrap();
+    let certain = Default::default();
+    let found = compare(&scene, &records, &reference, &reduced, (BANDWIDTH, Speed::Scene), &certain).unwrap();
     // another program's result has no eigenfrequency
     let mut imported = reference.clone();
     *imported.summary.quantities.value_mut("first_frequency").unwrap() = None;
-    let with_imported = compare(&scene, &records, &imported, &[], (BANDWIDTH, Speed::Scene)).unwrap();
+    let with_imported =
+        compare(&scene, &records, &imported, &[], (BANDWIDTH, Speed::Scene), &certain).unwrap();
     assert_eq!(with_imported.records, found.records);
     let series = found.efficiency.unwrap();
     assert_eq!(series, Series::of(series.values.clone()).unwrap());
