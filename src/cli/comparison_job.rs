@@ -4,7 +4,6 @@ use super::asked_model::AskedModel;
 use super::compare_arguments::Arguments;
 use super::compare_inputs;
 use super::external;
-use super::film::film;
 use super::scatter::scatter;
 use super::second_program::{self, CalculixRequest};
 use super::stored_references::{look_up, tell_reused};
@@ -16,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record};
 use crate::reference::{COARSER, Resolution, Stored};
-use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
+use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport};
 use crate::result::Outcome;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -35,7 +34,7 @@ pub(super) struct Job<'a> {
     /// Scene files, and what they say.
     pub(super) scenes: Vec<(PathBuf, Scene)>,
     records: Vec<Record>,
-    figures: Vec<(PathBuf, FigureFile)>,
+    figures: Vec<(PathBuf, FigureFormat)>,
 }
 
 /// Reference and reduced models of one scene.
@@ -186,8 +185,6 @@ impl<'a> Job<'a> {
                 ));
                 BTreeMap::new()
             }));
-            let asked = self.figures.iter().any(|(_, format)| *format == FigureFile::Animation);
-            let film = film(context, scene, (stored, reduced), asked)?;
             scenes.push(SceneReport {
                 scene,
                 comparison,
@@ -199,7 +196,6 @@ impl<'a> Job<'a> {
                     acceptances,
                     folder: compare_inputs::folder(file),
                     cost: cost.clone(),
-                    film,
                     ..Attachments::of(scene, stored)
                 },
             });
