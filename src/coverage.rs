@@ -220,7 +220,7 @@ mod tests {
             of(name).partners.iter().map(|p| (&*p.model, p.partner.as_deref())).collect()
         };
         let form = Some(CLOSED_FORM);
-        // a part is no whole: the models still have no partner
+        // a part is no whole: the models still have not compared
         let expected = [("A", None), ("A", form), ("B", None), ("B", form), ("C", None)];
         assert_eq!(partners("free edge"), expected);
         assert_eq!(partners("damped plate"), [("A", None), ("B", None), ("C", None)]);

@@ -107,8 +107,11 @@ pub(crate) fn percent(relative: Option<f64>) -> String {
         Some(r) if r.is_finite() => {
             let number =
                 if r.abs() < 0.1 { format!("{:.2}", 100.0 * r) } else { format!("{:.1}", 100.0 * r) };
-            let sign = if r > 0.0 { "+" } else { "" };
-            format!("{sign}{} %", minus(&number))
+            // what rounds to zero has no sign
+            let is_zero = !number.contains(|c: char| ('1'..='9').contains(&c));
+            let sign = if r > 0.0 && !is_zero { "+" } else { "" };
+            let number = if is_zero { number.trim_start_matches('-') } else { &number };
+            format!("{sign}{} %", minus(number))
         }
         _ => "–".into(),
     }

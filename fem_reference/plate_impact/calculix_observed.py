@@ -23,7 +23,7 @@ from .scene import Scene
 DAMPING = -0.05
 """Alpha of the steps: keeps the contacts from chattering."""
 OPEN = 2e-3
-"""Share of a contact's largest force below which it says nothing of when the contact ends: single
+"""Share of a contact's largest force below which it does not show when the contact ends: single
 points of integration are left then, which may even pull for a step."""
 
 

@@ -23,7 +23,7 @@ def _volume(points: Floats, corners: Ints) -> float:
 
 
 def _without(corners: Ints, gone: int, kept: int) -> Ints:
-    """The elements when node ``gone`` becomes ``kept``; those that had both are left out."""
+    """The elements when node ``gone`` becomes ``kept``; those that had both are omitted."""
     both = (corners == gone).any(axis=1) & (corners == kept).any(axis=1)
     kept_elements: Ints = np.where(corners == gone, kept, corners)[~both]
     return kept_elements

@@ -1,4 +1,4 @@
-"""Modal damping of the plate: closed form of a free mode, ledgers, modes that are left out."""
+"""Modal damping of the plate: closed form of a free mode, ledgers, modes that are omitted."""
 
 from __future__ import annotations
 

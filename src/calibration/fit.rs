@@ -135,7 +135,9 @@ pub fn fit(
     }
     let scatter = (left.norm_squared() / (count - unknowns) as f64).sqrt();
     let blocks = covariance(&left, &slopes).ok_or_else(|| {
-        Error::Solver(format!("{count} data are too few to tell how {unknowns} inputs scatter"))
+        Error::Solver(format!(
+            "{count} data are too few for the standard deviations of {unknowns} parameters"
+        ))
     })?;
     Ok(told(&problem, scatter, slopes, &blocks))
 }

@@ -148,9 +148,9 @@ fn document(
             .map_or_else(|| format!("the time of record {}", k - count + 1), |f| format!("`{}`", f.path()))
     };
     let sentence = |direction: &Vec<usize>| match &direction[..] {
-        [one] => format!("the records don't tell {}", name(one)),
+        [one] => format!("not identifiable from the records: {}", name(one)),
         several => format!(
-            "the records don't tell {} apart: other values of them together fit as well",
+            "not identifiable from the records: {} (other combinations fit as well)",
             several.iter().map(name).collect::<Vec<_>>().join(" and ")
         ),
     };

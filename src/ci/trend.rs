@@ -2,7 +2,7 @@
 
 use super::commit::{Commit, DIRTY};
 use super::json_lines;
-use crate::comparison::{Comparison, SceneComparison, Verdict};
+use crate::comparison::{SceneComparison, Verdict};
 use crate::error::Result;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -37,14 +37,14 @@ pub fn read(file: &Path) -> Result<Vec<Entry>> {
     json_lines::read(file)
 }
 
-/// Adds the gated numbers of `comparison` to `file`. What was recorded before for the same commit, scene and model is
+/// Adds the gated numbers of `scenes` to `file`. What was recorded before for the same commit, scene and model is
 /// replaced, and what was recorded before the files were committed goes.
 ///
 /// # Errors
 /// If the file can't be read or written.
-pub fn record(file: &Path, comparison: &Comparison, commit: &Commit) -> Result<Vec<Entry>> {
+pub fn record(file: &Path, scenes: &[SceneComparison], commit: &Commit) -> Result<Vec<Entry>> {
     let mut entries = read(file)?;
-    for new in comparison.scenes.iter().flat_map(|scene| entries_of(scene, commit)) {
+    for new in scenes.iter().flat_map(|scene| entries_of(scene, commit)) {
         let belongs = |e: &Entry| e.scene == new.scene && e.model == new.model;
         entries.retain(|e| e.commit == new.commit || !belongs(e) || !e.commit.ends_with(DIRTY));
         match entries.iter_mut().find(|e| belongs(e) && e.commit == new.commit) {

@@ -93,19 +93,18 @@ pub(super) fn told(choice: &Choice) -> String {
 /// The model that is asked for; what is left out is the scene's or the program's choice.
 #[derive(Debug, Clone, Default, Args)]
 pub struct ModelRequest {
-    /// Reduced model: A (one mode), B (Kirchhoff modes), C (continuum modes, residual flexibility), or auto, the cheapest whose
-    /// estimated error meets the tolerance [default: the scene's, else C]
+    /// Reduced model: A (one mode), B (Kirchhoff plate modes), C (3D elastic modes, residual flexibility), or auto
+    /// (the least expensive one whose estimated error is within the tolerance) [default: the scene's, or C]
     #[arg(long)]
     pub model: Option<AskedModel>,
-    /// Number of modes [default: the scene's, else 16 for B and as many as needed for C]
+    /// Number of modes [default: the scene's, or 16 for B and as many as needed for C]
     #[arg(long, value_name = "N")]
     pub modes: Option<usize>,
-    /// Relative error that the time integration may have: of the efficiency, of a seal seat's sphere of its velocity [default: 1e-7,
-    /// of a seal seat 1e-3]; with --model auto the error of the model itself: of the efficiency, the outer body's final velocity
-    /// and both force peaks [default: 1%]
+    /// Relative error of the time integration [default: 1e-7; seal seat 1e-3]. With --model auto: relative error of
+    /// the model in efficiency, final velocity of the outer body and both peak forces [default: 1%]
     #[arg(long, value_parser = tolerance)]
     pub tolerance: Option<f64>,
-    /// Mesh of the seat (.vtu, tetrahedra), for seal-seat scenes [default: that in meshes/ or the cache, else a new one]
+    /// Mesh of the seat (.vtu, tetrahedra), seal-seat scenes only [default: from meshes/ or the cache, or a new one]
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
 }

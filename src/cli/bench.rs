@@ -10,19 +10,20 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Numbers of modes at which integrators are compared; the default takes a minute or two, 1,16,64,256 about an hour
+    /// Numbers of modes at which integrators are compared (default: a minute or two; 1,16,64,256: about an hour)
     #[arg(long, value_delimiter = ',', default_value = "1,16", value_name = "N,…")]
     modes: Vec<usize>,
-    /// Also run these programs that solve the same equations, as benches/diffsol does: one JSON document in, one line per run out
+    /// Other programs to run, which solve the same equations as benches/diffsol does (JSON document in, one line per
+    /// run out)
     #[arg(long = "peer", value_name = "PROGRAM")]
     peers: Vec<PathBuf>,
-    /// Random impacts in each series (models B and C, with and without other shapes), each held against an exact set-up
+    /// Random impacts in each batch (models B and C, fixed and varied shapes), each compared with an exact solution
     #[arg(long, default_value_t = 1000, value_name = "N")]
     series: usize,
-    /// Measure series alone
+    /// Measure the batches only
     #[arg(long)]
     series_alone: bool,
-    /// Write the document and the diagrams (JSON, SVG, PNG) into this folder
+    /// Folder for the results and diagrams (JSON, SVG, PNG)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -47,7 +48,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         let svg = bench::figure(&bench);
         let text = serde_json::to_string_pretty(&bench)
             .map_err(|e| crate::error::Error::Internal(format!("writing JSON: {e}")))?;
-        let png = report::png(&svg, 2.0)?;
+        let png = crate::plot::png(&svg, 2.0)?;
         for (name, bytes) in
             [("bench.json", text.as_bytes()), ("bench.svg", svg.as_bytes()), ("bench.png", &png[..])]
         {

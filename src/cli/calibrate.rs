@@ -12,21 +12,21 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, or the name of a shipped scene
+    /// Scene file, or name of a shipped scene
     scene: String,
-    /// Fields to find
+    /// Fields to identify
     #[arg(long, value_delimiter = ',', required = true, value_name = "FIELD,…")]
     over: Vec<String>,
-    /// Measured histories of the scene, as `compare` takes them
+    /// Measured histories (CSV), as in `compare --measured`
     #[arg(long, value_delimiter = ',', required = true, value_name = "FILE,…")]
     measured: Vec<PathBuf>,
     /// Reduced model [default: C]
     #[arg(long, default_value = "C", hide_default_value = true)]
     model: Model,
-    /// Bandwidth of the instrument, to which the model's curves are filtered
+    /// Bandwidth of the instrument; the model's curves are filtered to it
     #[arg(long, default_value = "100 kHz", value_name = "FREQUENCY", value_parser = compare_inputs::bandwidth)]
     bandwidth: f64,
-    /// Where the outer body's measured speed comes from: scene (the signal may have an offset) or measured (it has none)
+    /// Source of the outer body's speed: scene (the signal may have an offset) or measured (it has none)
     #[arg(long, default_value = "scene", value_name = "SOURCE")]
     speed: Speed,
     #[command(flatten)]
@@ -70,7 +70,7 @@ fn table(found: &Calibration) -> String {
         let to = prefixed(input.unit, input.value);
         let deviation = input
             .standard_deviation
-            .map_or(" (not told by the records)".to_owned(), |u| format!(" ± {}", with_unit(u, to, 2)));
+            .map_or(" (not identifiable)".to_owned(), |u| format!(" ± {}", with_unit(u, to, 2)));
         let off = percent(Some(input.value / input.nominal - 1.0));
         lines.push(format!(
             "  {:<36} {:>16}{deviation}  ({off} of the scene's)",

@@ -1,8 +1,8 @@
 //! `impactcheck compare`: the main job, scene to verdict.
 
 use super::compare_arguments::Arguments;
-use super::comparison_job::{Job, Outputs};
-use super::{Context, compare_inputs, kinds};
+use super::comparison_job::Job;
+use super::{Context, compare_inputs, kinds, stored_references};
 use crate::error::{Error, ExitStatus, Result};
 use crate::report;
 use clap::Args;
@@ -12,15 +12,20 @@ use clap::Args;
 pub struct OwnArguments {
     #[command(flatten)]
     shared: Arguments,
-    /// Compare again whenever a scene's file (or a measured one) changes, until Ctrl-C, which ends with the status of the last
-    /// comparison. A file that is not valid is told of and waited for; of a plate without a reference the models run alone
+    /// Compare again whenever a scene file or measured file changes. An invalid file is reported and read again when
+    /// it changes. If a plate has no reference yet, only the models run. Ctrl-C ends with the status of the last
+    /// comparison
     #[arg(long, conflicts_with = "json")]
     watch: bool,
 }
 
 /// Compares, once or whenever a file changes.
 pub fn run(context: &Context, OwnArguments { shared, watch }: OwnArguments) -> Result<ExitStatus> {
-    let arguments = &shared.with_tables_measured();
+    let mut arguments = shared.with_tables_measured();
+    if arguments.resolution.is_none() && !arguments.compute {
+        arguments.resolution = stored_references::only_stored(context, &arguments.scenes)?;
+    }
+    let arguments = &arguments;
     if !watch {
         return once(context, arguments);
     }
@@ -50,7 +55,10 @@ fn once(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let job = Job::read(context, arguments)?;
     job.check_folders(&[])?;
     let results = job.results(context)?;
-    let comparison = job.finish(context, job.report(context, &results)?, &Outputs::default())?;
+    let comparisons = job.comparisons(context, &results)?;
+    let entries = job.trends(&comparisons, None)?;
+    let report = job.report(context, &results, comparisons, &entries)?;
+    let comparison = job.finish(context, &report, None)?;
     Ok(match comparison.lacks_a_result() {
         true => ExitStatus::Solver,
         false if job.refuses(&comparison) => ExitStatus::ToleranceExceeded,

@@ -12,47 +12,50 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Scene files or names of shipped scenes [default: all shipped scenes]
     pub(super) scenes: Vec<String>,
-    /// Models to compare; auto stands for the cheapest whose estimated error meets the tolerance, external for the programs that
-    /// the scene names
+    /// Models to compare; auto is the least expensive one within the tolerance, external the programs under
+    /// [[external]]
     #[arg(long, value_delimiter = ',', default_value = "A,B,C,external")]
     pub(super) models: Vec<AskedModel>,
     #[command(flatten)]
     pub(super) permission: Permission,
-    /// Tolerance of auto: relative error of the efficiency, the outer body's final velocity and both force peaks [default: 1%]
+    /// Tolerance of auto: relative error of efficiency, final velocity of the outer body and both peak forces
+    /// [default: 1%]
     #[arg(long, value_parser = asked_model::tolerance)]
     pub(super) tolerance: Option<f64>,
-    /// Resolution of the reference: coarse, paper, fine, or the error of one computed with --target-error, such as 0.2%
-    #[arg(long, default_value = "paper")]
-    pub(super) resolution: Resolution,
-    /// Compute references that are missing or stale instead of stopping (needs FEniCSx)
+    /// Resolution of the reference: coarse, paper (standard), fine, or the value given to --target-error, such as 0.2%
+    /// [default: paper; `compare` takes the finest stored one of a scene that has no other]
+    #[arg(long)]
+    pub(super) resolution: Option<Resolution>,
+    /// Compute references that are missing or out of date (needs FEniCSx)
     #[arg(long)]
     pub(super) compute: bool,
-    /// CalculiX's solution of each scene beside the reference has to be there (`--compute` computes it) and within the bands of
-    /// both, or the exit status is 10; without this it is shown where it is stored. Scenes that CalculiX does not take are left out
+    /// Require that CalculiX's solution agrees with the reference within both uncertainties; else the exit status is
+    /// 10. With --compute a missing one is computed. Scenes that CalculiX cannot solve are skipped
     #[arg(long)]
     pub(super) reference_check: bool,
-    /// Measured histories of the scene (CSV, units in the header: `time [us],outer_velocity [mm/s],...`); several files are
-    /// repeated impacts, with commas or spaces between them
+    /// Measured histories (CSV, units in the header: `time [us],outer_velocity [mm/s],...`). Several files, separated
+    /// by commas or spaces, are repeated impacts
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
     pub(super) measured: Vec<PathBuf>,
-    /// Bandwidth of the instrument, to which the models' curves are filtered
+    /// Bandwidth of the instrument; the models' curves are filtered to it
     #[arg(long, default_value = "100 kHz", value_name = "FREQUENCY", value_parser = compare_inputs::bandwidth)]
     pub(super) bandwidth: f64,
-    /// Where the outer body's measured speed comes from: scene (the signal may have an offset) or measured (it has none)
+    /// Source of the outer body's speed: scene (the signal may have an offset) or measured (it has none)
     #[arg(long, default_value = "scene", value_name = "SOURCE")]
     pub(super) speed: Speed,
-    /// Write the figure for a paper to this file (.svg, .pdf or .png), or an animation of a plate impact (.gif): the reference's
-    /// stress, as `reference SCENE --fields 40` stores it, beside a reduced model's deflection; of several scenes, the scene's name
-    /// is added
+    /// Write the figure for a paper to this file (.svg, .pdf or .png); of several scenes, the scene's name is added
     #[arg(long, value_name = "FILE")]
     pub(super) figure: Option<PathBuf>,
-    /// Width of that figure: 85 mm is one column, 175 mm a page
+    /// Width of the figure: 85 mm (one column) to 175 mm (a page)
     #[arg(long, default_value = "175 mm", value_name = "LENGTH", value_parser = compare_inputs::figure_width, requires = "figure")]
     pub(super) figure_width: f64,
-    /// Results over commits to draw in the report [default: trends.jsonl in the report's folder, if it exists]
+    /// Recorded results over commits, drawn in the report [default: trends.jsonl in the report's folder]
     #[arg(long, value_name = "FILE")]
     pub(super) trends: Option<PathBuf>,
-    /// Folder the report is written to
+    /// Print the values of the models too; the table is then up to 150 columns wide
+    #[arg(long, conflicts_with = "json")]
+    pub(super) wide: bool,
+    /// Folder of the report
     #[arg(long, default_value = "reports", value_name = "DIR")]
     pub(super) out: PathBuf,
     #[command(flatten)]
@@ -60,6 +63,10 @@ pub struct Arguments {
 }
 
 impl Arguments {
+    pub(super) fn resolution(&self) -> Resolution {
+        self.resolution.unwrap_or(Resolution::Paper)
+    }
+
     /// Tables among the scenes belong to `--measured`, whose files a shell lists with spaces between them.
     pub(super) fn with_tables_measured(mut self) -> Self {
         if !self.measured.is_empty() {

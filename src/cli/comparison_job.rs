@@ -4,19 +4,18 @@ use super::asked_model::AskedModel;
 use super::compare_arguments::Arguments;
 use super::compare_inputs;
 use super::external;
-use super::film::film;
 use super::scatter::scatter;
-use super::second_program::{self, CalculixRequest};
+use super::second_program;
 use super::stored_references::{look_up, tell_reused};
 use super::{Context, kinds, validated_scenes};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
-use crate::comparison::{Comparison, GateRules, ReferenceCheck, SceneComparison, compare_scene};
+use crate::comparison::{Comparison, ComparisonInput, GateRules, SceneComparison, budget};
 use crate::error::{Error, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record};
-use crate::reference::{COARSER, Resolution, Stored};
-use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport};
+use crate::reference::{Resolution, Stored};
+use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport, Width};
 use crate::result::Outcome;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -35,7 +34,7 @@ pub(super) struct Job<'a> {
     /// Scene files, and what they say.
     pub(super) scenes: Vec<(PathBuf, Scene)>,
     records: Vec<Record>,
-    figures: Vec<(PathBuf, FigureFile)>,
+    figures: Vec<(PathBuf, FigureFormat)>,
 }
 
 /// Reference and reduced models of one scene.
@@ -48,15 +47,6 @@ pub(super) struct Results {
     coarser: Option<(Stored, Vec<Outcome>)>,
     /// CalculiX's solution.
     other: Option<Stored>,
-}
-
-/// What is written besides the report.
-#[derive(Debug, Default)]
-pub(super) struct Outputs {
-    /// The checks as JUnit XML.
-    pub(super) junit: Option<PathBuf>,
-    /// File of results over commits, and the commit to add to it.
-    pub(super) record: Option<(PathBuf, Commit)>,
 }
 
 impl<'a> Job<'a> {
@@ -114,7 +104,7 @@ impl<'a> Job<'a> {
     }
 
     pub(super) fn resolution(&self) -> Resolution {
-        self.arguments.resolution
+        self.arguments.resolution()
     }
 
     pub(super) fn out(&self) -> &Path {
@@ -123,7 +113,7 @@ impl<'a> Job<'a> {
 
     /// References from the store (or computed), and the reduced models' runs, of every scene.
     pub(super) fn results(&self, context: &Context) -> Result<Vec<Results>> {
-        let references = look_up(context, self.arguments.resolution, self.arguments.compute, &self.scenes)?;
+        let references = look_up(context, self.resolution(), self.arguments.compute, &self.scenes)?;
         for stored in &references {
             tell_reused(context, stored);
         }
@@ -143,8 +133,7 @@ impl<'a> Job<'a> {
                 let (reduced, _) = models.beside(context, scene, &stored, asked)?;
                 Ok((stored, reduced))
             });
-            let asked = CalculixRequest::of(self.arguments.reference_check, self.arguments.compute);
-            let other = second_program::beside(context, file, scene, self.resolution(), asked)?;
+            let other = second_program::independent(context, file, scene, self.arguments)?;
             Ok(Results { stored, reduced, cost, coarser: coarser.transpose()?, other })
         };
         self.scenes.iter().zip(references).map(result).collect()
@@ -161,33 +150,79 @@ impl<'a> Job<'a> {
         context.store().for_scene_in(file).find_here_or_shipped(scene, resolution).found()
     }
 
-    /// The comparison of all scenes, and what is shown with it.
-    pub(super) fn report<'b>(&'b self, context: &Context, results: &'b [Results]) -> Result<Report<'b>> {
-        let (mut scenes, mut found, mut scatters) = (Vec::new(), Vec::new(), Vec::new());
-        for ((file, scene), Results { stored, reduced, cost, coarser, other }) in
-            self.scenes.iter().zip(results)
-        {
-            let acceptances = acceptance::read(file)?;
-            let mut comparison = compared(context, scene, &stored.outcome, reduced);
-            if let Some((stored, reduced)) = coarser {
-                let coarser = compare_scene(scene, &stored.outcome, reduced);
-                comparison.judge_on_common_mesh(&coarser, COARSER);
-            }
-            let beside = |other: &Stored| ReferenceCheck::of(&stored.outcome.summary, &other.outcome.summary);
-            comparison.reference_check = other.as_ref().map(beside);
-            let checks = acceptance::checks(&acceptances, &stored.outcome.summary, self.resolution());
-            comparison.add_reference_checks(checks);
-            comparison.changed_tolerances = compare_inputs::changed_tolerances(file, &acceptances)?;
-            found.push((stored, Validation::of(scene, &comparison)));
-            scatters.push(scatter(context, file, scene, &comparison).unwrap_or_else(|error| {
-                context.note(format_args!(
-                    "scene `{}` is compared as if its inputs were certain: {error}",
-                    scene.name
-                ));
-                BTreeMap::new()
-            }));
-            let asked = self.figures.iter().any(|(_, format)| *format == FigureFile::Animation);
-            let film = film(context, scene, (stored, reduced), asked)?;
+    /// The finished comparisons of all scenes.
+    pub(super) fn comparisons(&self, context: &Context, results: &[Results]) -> Result<Vec<SceneComparison>> {
+        self.scenes
+            .iter()
+            .zip(results)
+            .map(|(scene, results)| self.compared(context, scene, results))
+            .collect()
+    }
+
+    fn compared(
+        &self,
+        context: &Context,
+        (file, scene): &(PathBuf, Scene),
+        Results { stored, reduced, coarser, other, .. }: &Results,
+    ) -> Result<SceneComparison> {
+        let reference = &stored.outcome;
+        let acceptances = acceptance::read(file)?;
+        let budget = budget::of_results(scene, &reference.summary, reduced).unwrap_or_else(|error| {
+            context.note(format_args!("scene `{}` has no discrepancy budget: {error}", scene.name));
+            Vec::new()
+        });
+        let scatters = scatter(context, file, scene, reduced).unwrap_or_else(|error| {
+            context.note(format_args!(
+                "scene `{}` is compared as if its inputs were certain: {error}",
+                scene.name
+            ));
+            BTreeMap::new()
+        });
+        let how = (self.arguments.bandwidth, self.arguments.speed);
+        let measured = (!self.records.is_empty())
+            .then(|| measured::compare(scene, &self.records, reference, reduced, how, &scatters));
+        let input = ComparisonInput {
+            coarser: coarser.as_ref().map(|(stored, reduced)| (&stored.outcome, &reduced[..])),
+            other: other.as_ref().map(|other| &other.outcome),
+            measured: measured.transpose()?,
+            scatters,
+            accepted: acceptance::checks(&acceptances, &reference.summary, self.resolution()),
+            changed_tolerances: compare_inputs::changed_tolerances(file, &acceptances)?,
+            budget,
+            ..ComparisonInput::new(scene, reference, reduced)
+        };
+        Ok(input.compare())
+    }
+
+    /// What is shown of `comparisons`; `entries` are the results over commits.
+    pub(super) fn report<'b>(
+        &'b self,
+        context: &Context,
+        results: &'b [Results],
+        comparisons: Vec<SceneComparison>,
+        entries: &[trend::Entry],
+    ) -> Result<Report<'b>> {
+        let of_scenes = || self.scenes.iter().zip(results);
+        let found: Vec<_> = of_scenes()
+            .zip(&comparisons)
+            .map(|(((_, scene), results), comparison)| (&results.stored, Validation::of(scene, comparison)))
+            .collect();
+        let validated: Arc<[Validation]> = validated_scenes::known(context, &found).into();
+        let coverage = validated_scenes::coverage(context, &validated).map(Arc::new);
+        let compared = Some(chrono::Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string());
+        let mut scenes = Vec::new();
+        for (((file, scene), results), comparison) in of_scenes().zip(comparisons) {
+            let Results { stored, reduced, cost, .. } = results;
+            let attachments = Attachments {
+                cost: cost.clone(),
+                folder: compare_inputs::folder(file),
+                compared: compared.clone(),
+                trends: trend::trends(entries, &comparison),
+                acceptances: acceptance::read(file)?,
+                validated: Arc::clone(&validated),
+                coverage: coverage.clone(),
+                ..Attachments::of(scene, stored)
+            };
             scenes.push(SceneReport {
                 scene,
                 comparison,
@@ -195,40 +230,15 @@ impl<'a> Job<'a> {
                 reduced,
                 provenance: stored.provenance.clone(),
                 command: self.command(scene),
-                attachments: Attachments {
-                    acceptances,
-                    folder: compare_inputs::folder(file),
-                    cost: cost.clone(),
-                    film,
-                    ..Attachments::of(scene, stored)
-                },
+                attachments,
             });
-        }
-        let known: Arc<[Validation]> = validated_scenes::known(context, &found).into();
-        let coverage = validated_scenes::coverage(context, &known).map(Arc::new);
-        for report in &mut scenes {
-            report.attachments.validated = Arc::clone(&known);
-            report.attachments.coverage.clone_from(&coverage);
-        }
-        if let (Some(report), false) = (scenes.first_mut(), self.records.is_empty()) {
-            let how = (self.arguments.bandwidth, self.arguments.speed);
-            let measured =
-                measured::compare(report.scene, &self.records, report.reference, report.reduced, how)?;
-            report.comparison.measured = Some(measured);
-            let files = self.arguments.measured.iter().map(|f| format!(" --measured {}", f.display()));
-            report.command += &files.collect::<String>();
-        }
-        for (report, scatters) in
-            scenes.iter_mut().zip(&scatters).filter(|(_, scatters)| !scatters.is_empty())
-        {
-            report.comparison.add_validation(scatters);
         }
         Ok(Report { scenes, rules: GateRules::default() })
     }
 
     /// The command line that compares `scene` in the same way.
     fn command(&self, scene: &Scene) -> String {
-        let Arguments { scenes, models, resolution, .. } = self.arguments;
+        let Arguments { scenes, models, .. } = self.arguments;
         let place = self.scenes.iter().position(|(_, other)| other.name == scene.name);
         let named = place.and_then(|k| scenes.get(k)).unwrap_or(&scene.name);
         let mut command = format!("impactcheck compare {named}");
@@ -242,21 +252,39 @@ impl<'a> Job<'a> {
         if self.arguments.reference_check {
             command += " --reference-check";
         }
-        if *resolution != Resolution::Paper {
-            command += &format!(" --resolution {}", resolution.argument());
+        if self.resolution() != Resolution::Paper {
+            command += &format!(" --resolution {}", self.resolution().argument());
         }
-        command
+        let measured = self.arguments.measured.iter().map(|file| format!(" --measured {}", file.display()));
+        command + &measured.collect::<String>()
     }
 
-    /// Writes the report and `outputs`, and prints the result.
+    /// Results over commits; those of these comparisons are added to the file of `record`, at its commit.
+    pub(super) fn trends(
+        &self,
+        comparisons: &[SceneComparison],
+        record: Option<&(PathBuf, Commit)>,
+    ) -> Result<Vec<trend::Entry>> {
+        match record {
+            Some((file, commit)) => trend::record(file, comparisons, commit),
+            None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS))),
+        }
+    }
+
+    /// Writes the report, its figures and the checks as JUnit XML to `junit`, and prints the result.
     pub(super) fn finish(
         &self,
         context: &Context,
-        mut report: Report,
-        outputs: &Outputs,
+        report: &Report,
+        junit: Option<&Path>,
     ) -> Result<Comparison> {
-        let comparison = self.write(&mut report, outputs)?;
-        self.arguments.json.print(&comparison, |_| report::terminal(&report))?;
+        self.write(report)?;
+        if let Some(file) = junit {
+            write_file(file, report::junit(report)?.as_bytes())?;
+        }
+        let comparison = report.comparison();
+        let width = if self.arguments.wide { Width::Wide } else { Width::Narrow };
+        self.arguments.json.print(&comparison, |_| report::terminal(report, width))?;
         context.note(format_args!(
             "{} scene{} compared in {:.2} s; report: {}",
             self.scenes.len(),
@@ -267,35 +295,12 @@ impl<'a> Job<'a> {
         Ok(comparison)
     }
 
-    /// Writes the report and `outputs`.
-    pub(super) fn write(&self, report: &mut Report, outputs: &Outputs) -> Result<Comparison> {
-        let comparison = report.comparison();
-        let entries = match &outputs.record {
-            Some((file, commit)) => trend::record(file, &comparison, commit)?,
-            None => trend::read(self.arguments.trends.as_ref().unwrap_or(&self.arguments.out.join(TRENDS)))?,
-        };
-        let now = chrono::Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string();
-        for scene in &mut report.scenes {
-            scene.attachments.compared = Some(now.clone());
-            scene.attachments.trends = trend::trends(&entries, &scene.comparison);
-        }
+    /// Writes the report and its figures.
+    pub(super) fn write(&self, report: &Report) -> Result<()> {
         report::write(report, &self.arguments.out)?;
         for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
             write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
         }
-        if let Some(file) = &outputs.junit {
-            write_file(file, report::junit(report)?.as_bytes())?;
-        }
-        Ok(comparison)
+        Ok(())
     }
-}
-
-/// The comparison with its discrepancy budget. A budget that can't be drawn up is said to be missing: the comparison
-/// stands without it.
-fn compared(context: &Context, scene: &Scene, reference: &Outcome, reduced: &[Outcome]) -> SceneComparison {
-    let mut comparison = compare_scene(scene, reference, reduced);
-    if let Err(error) = comparison.add_budget(scene) {
-        context.note(format_args!("scene `{}` has no discrepancy budget: {error}", scene.name));
-    }
-    comparison
 }

@@ -14,12 +14,12 @@ use clap::Args;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene files or names of shipped scenes [default: all scenes of the project, examples and validation too]
+    /// Scene files or names of shipped scenes [default: all scenes of the project]
     scenes: Vec<String>,
     #[command(flatten)]
     permission: Permission,
-    /// Write what was found to the project's record of validated scenes; where the reference is elsewhere, the models as they
-    /// are now beside what is recorded of it
+    /// Update the project's record of compared scenes. Where a reference is not stored here, the models are updated
+    /// and its recorded values kept
     #[arg(long)]
     record: bool,
     #[command(flatten)]
@@ -115,7 +115,11 @@ fn table(found: &Coverage) -> String {
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
     let mut lines = vec![format!(
         "{:<28} {:<6} {:<14} {:>6}  {}",
-        "feature", "model", "held against", "scenes", "largest difference (95 % band of the partner)"
+        "feature",
+        "model",
+        "compared with",
+        "scenes",
+        "largest difference (uncertainty of the comparator, 95 %)"
     )];
     for feature in &found.features {
         let mut name = feature.feature;

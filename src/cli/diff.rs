@@ -12,14 +12,14 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// A document of `compare` or `gate`, or the folder of a report
+    /// JSON document of `compare` or `gate`, or folder of a report
     a: PathBuf,
-    /// Another
+    /// The other one
     b: PathBuf,
-    /// Leave out numbers that moved by less than this share, such as 0.1%
+    /// Omit numbers that changed by less than this, such as 0.1%
     #[arg(long, value_name = "SHARE")]
     above: Option<TargetError>,
-    /// Write what moved as a page, the largest move first
+    /// Write the changes as a page, the largest first
     #[arg(long, value_name = "FILE.html")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -54,7 +54,7 @@ fn markdown(moves: &Moves) -> String {
         rows.push([row.scene.clone(), row.model.clone(), row.quantity.clone(), a, b, percent(row.relative)]);
     }
     if rows.is_empty() {
-        return "nothing moved".into();
+        return "nothing changed".into();
     }
     let heads = ["scene", "model", "quantity", "A", "B", "moved"].map(String::from);
     let widths: [usize; 6] = std::array::from_fn(|k| {

@@ -2,6 +2,7 @@
 
 use super::{Context, JsonArgument};
 use crate::error::{ExitStatus, Result};
+use crate::reference::{Check, INDEPENDENT_SOLVER};
 
 /// Runs the checks. If anything is missing, the exit status says so too; what is stored can be compared all the same.
 pub fn run(context: &Context, arguments: JsonArgument) -> Result<ExitStatus> {
@@ -9,6 +10,7 @@ pub fn run(context: &Context, arguments: JsonArgument) -> Result<ExitStatus> {
     if arguments.json {
         super::print_json(&checks)?;
     } else {
+        super::print(&ready(&checks))?;
         for check in &checks {
             let line = match &check.found {
                 Some(found) => format!("found    {:<14} {found}", check.name),
@@ -25,4 +27,15 @@ pub fn run(context: &Context, arguments: JsonArgument) -> Result<ExitStatus> {
     }
     let is_complete = checks.iter().all(|check| check.found.is_some() || check.optional);
     Ok(if is_complete { ExitStatus::Pass } else { ExitStatus::Solver })
+}
+
+/// What can be done on this machine, in a line.
+fn ready(checks: &[Check]) -> String {
+    let missing = checks.iter().find(|check| check.found.is_none() && !check.optional);
+    let finite_elements = missing.map_or("yes".to_owned(), |check| format!("no ({} is missing)", check.name));
+    let has = |name: &str| checks.iter().any(|check| check.name == name && check.found.is_some());
+    let solver = if has(INDEPENDENT_SOLVER) { "yes" } else { "no (optional)" };
+    format!(
+        "ready for: reduced models and reports: yes; finite elements: {finite_elements}; independent solver: {solver}"
+    )
 }

@@ -16,8 +16,8 @@ const SAMPLE_INTERVAL: f64 = 1e-7;
 /// The user's leave.
 #[derive(Debug, Clone, Copy, Args)]
 pub(super) struct Permission {
-    /// Run the programs that the scenes name under [[external]]; so does IMPACTCHECK_ALLOW_EXTERNAL=1. A scene from elsewhere
-    /// can name any program
+    /// Run the programs under [[external]] of the scenes (or set IMPACTCHECK_ALLOW_EXTERNAL=1). Caution: a scene can
+    /// name any program
     #[arg(long)]
     pub(super) allow_external: bool,
 }

@@ -2,7 +2,7 @@
 
 use super::Context;
 use super::compare_arguments;
-use super::comparison_job::{Job, Outputs, Results};
+use super::comparison_job::{Job, Results};
 use crate::ci::acceptance::{self, Acceptance, AcceptedReference, ToleranceChange};
 use crate::ci::{commit, tolerance_edit, tolerance_watch};
 use crate::comparison::{GateRules, SceneComparison, Undecided, Verdict};
@@ -10,7 +10,7 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::reference::Resolution;
 use crate::report::github;
-use crate::report::{self, Attachments, Report, SceneReport};
+use crate::report::{self, Report};
 use crate::scene::Scene;
 use clap::Args;
 use std::io::Write;
@@ -20,23 +20,24 @@ use std::path::{Path, PathBuf};
 pub struct Arguments {
     #[command(flatten)]
     pub(super) compare: compare_arguments::Arguments,
-    /// Write the checks as JUnit XML to this file
+    /// Write JUnit XML to this file
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
-    /// Add the gated numbers, with the commit, to this file of results over commits (JSON lines)
+    /// Append the checked numbers, with the commit, to this file (JSON lines)
     #[arg(long, value_name = "FILE", conflicts_with = "trends")]
     record: Option<PathBuf>,
-    /// How quantities count whose verdict the reference's 95 % band leaves open: fail, warn (they pass, and are told) or pass
+    /// What to do with quantities that the reference's uncertainty leaves undecided: fail, warn (pass with a message)
+    /// or pass
     #[arg(long, default_value = "warn", value_name = "fail|warn|pass")]
     undecided: Undecided,
-    /// Let a scene fail of which nothing is gated, or whose reference has no value for a tolerance
+    /// Fail if a scene has no tolerances, or if the reference has no value for one
     #[arg(long)]
     require_tolerances: bool,
-    /// Change what fails in the scene files (known bias; bound of a residual) so that it passes, and accept the references as
-    /// they are; the reason is kept beside the scene file
+    /// Edit the scene files so that what fails passes (bias, bounds of residuals), and accept the present references.
+    /// The reason is stored next to the scene file
     #[arg(long, requires = "reason")]
     update: bool,
-    /// Why the change is right
+    /// Why the change is correct
     #[arg(long, value_name = "TEXT", requires = "update", value_parser = reason)]
     reason: Option<String>,
 }
@@ -45,41 +46,43 @@ pub struct Arguments {
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let job = Job::read(context, &arguments.compare)?;
     job.check_folders(&[arguments.junit.as_ref(), arguments.record.as_ref()])?;
-    let record = match &arguments.record {
-        Some(file) => Some((file.clone(), commit(&job, file)?)),
-        None => None,
-    };
+    let at_commit = |file: &PathBuf| Ok((file.clone(), commit(&job, file)?));
+    let record = arguments.record.as_ref().map(at_commit).transpose()?;
     let results = job.results(context)?;
     let rules =
         GateRules { undecided: arguments.undecided, require_tolerances: arguments.require_tolerances };
-    let outputs = Outputs { junit: arguments.junit.clone(), record };
-    let Some(reason) = arguments.reason.as_ref().filter(|_| arguments.update) else {
-        return conclude(context, &job, &results, &outputs, rules);
-    };
-    if update(context, &job, &results, reason)? {
+    let outputs = (arguments.junit.as_deref(), record.as_ref());
+    let reason = arguments.reason.as_ref().filter(|_| arguments.update);
+    let is_updated = reason.map(|reason| update(context, &job, &results, reason)).transpose()?;
+    if is_updated == Some(true) {
         // scenes are immutable: those of the new tolerances are read again, and what was solved stays
-        return conclude(context, &Job::read(context, &arguments.compare)?, &results, &outputs, rules);
+        return conclude(context, &Job::read(context, &arguments.compare)?, &results, outputs, rules);
     }
-    conclude(context, &job, &results, &outputs, rules)
+    conclude(context, &job, &results, outputs, rules)
 }
 
+/// Compares, adds the gated numbers to `record`, writes the report and JUnit XML.
 fn conclude(
     context: &Context,
     job: &Job,
     results: &[Results],
-    outputs: &Outputs,
+    (junit, record): (Option<&Path>, Option<&(PathBuf, commit::Commit)>),
     rules: GateRules,
 ) -> Result<ExitStatus> {
-    let report = Report { rules, ..job.report(context, results)? };
+    let comparisons = job.comparisons(context, results)?;
+    let entries = job.trends(&comparisons, record)?;
+    let report = Report { rules, ..job.report(context, results, comparisons, &entries)? };
     tell_verdicts(job, &report);
-    for changed in report.changed_tolerances() {
-        // not a note: --quiet must not hide that the gate is another one
-        super::tell(format_args!("warning: {changed}"));
+    for SceneComparison { scene, changed_tolerances, .. } in report.scenes.iter().map(|s| &s.comparison) {
+        for changed in changed_tolerances {
+            // not a note: --quiet must not hide that the gate is another one
+            super::tell(format_args!("warning: {scene}: {}", changed.sentence()));
+        }
     }
     if github::is_running() {
         tell_github(context, job, &report)?;
     }
-    let comparison = job.finish(context, report, outputs)?;
+    let comparison = job.finish(context, &report, junit)?;
     if comparison.lacks_a_result() {
         return Ok(ExitStatus::Solver);
     }
@@ -116,7 +119,7 @@ fn tell_verdicts(job: &Job, report: &Report) {
                 lacking.join(", ")
             )),
             Verdict::Undecided => super::tell(format_args!(
-                "{word}: scene `{scene}` is undecided: the band of its reference leaves tolerances open; each such quantity says what would decide it"
+                "{word}: scene `{scene}` is undecided: the uncertainty of its reference is too large for some tolerances; see the lines above for what decides them"
             )),
             _ => {}
         }
@@ -155,10 +158,10 @@ fn tell_github(context: &Context, job: &Job, report: &Report) -> Result<()> {
 
 /// Changes what fails in the scene files, and records why. Whether anything was changed.
 fn update(context: &Context, job: &Job, results: &[Results], reason: &str) -> Result<bool> {
-    let report = job.report(context, results)?;
-    let scenes = job.scenes.iter().zip(&report.scenes);
-    let change = |((file, _), scene): (&(PathBuf, Scene), &SceneReport)| {
-        SceneUpdate::of(file, &scene.comparison, &scene.attachments, job.resolution(), reason)
+    let comparisons = job.comparisons(context, results)?;
+    let scenes = job.scenes.iter().zip(&comparisons);
+    let change = |((file, _), comparison): (&(PathBuf, Scene), &SceneComparison)| {
+        SceneUpdate::of(file, comparison, job.resolution(), reason)
     };
     let changes = scenes.map(change).collect::<Result<Vec<_>>>()?;
     for change in &changes {
@@ -179,13 +182,7 @@ struct SceneUpdate {
 
 impl SceneUpdate {
     /// The change that makes `comparison` pass, checked, not yet made.
-    fn of(
-        file: &Path,
-        comparison: &SceneComparison,
-        attachments: &Attachments,
-        resolution: Resolution,
-        reason: &str,
-    ) -> Result<Self> {
+    fn of(file: &Path, comparison: &SceneComparison, resolution: Resolution, reason: &str) -> Result<Self> {
         acceptable(comparison)?;
         let old = std::fs::read_to_string(file).map_err(|e| Error::io("reading", file, e))?;
         let (text, tolerances) = tolerance_edit::edited(&old, comparison)?;
@@ -203,7 +200,7 @@ impl SceneUpdate {
             }
         }
         let reference = AcceptedReference::of(&comparison.reference, resolution);
-        let known = attachments.acceptances.iter().any(|a| a.reference == reference);
+        let known = acceptance::read(file)?.iter().any(|a| a.reference == reference);
         // what was written has to be read back as what was meant, before it is written
         Scene::parse(&file.display().to_string(), &text)?;
         let date = acceptance::today();

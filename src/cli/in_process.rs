@@ -6,7 +6,7 @@ pub use super::asked_model::ModelRequest;
 
 use super::asked_model::within_bounds;
 use super::compare_arguments::Arguments;
-use super::comparison_job::{Job, Outputs};
+use super::comparison_job::Job;
 use super::optimise::{self, Solved};
 use super::{Context, compare_inputs, kinds, stored_references};
 use crate::comparison::Comparison;
@@ -90,18 +90,21 @@ pub fn compare(scenes: Vec<Placed>, asked: Comparing) -> Result<Compared> {
     arguments.speed = speed.unwrap_or(arguments.speed);
     arguments.measured = measured;
     arguments.permission.allow_external = allow_external;
-    (arguments.models, arguments.resolution, arguments.compute) = (models, resolution, compute);
+    (arguments.models, arguments.resolution, arguments.compute) = (models, Some(resolution), compute);
     arguments.out = out.unwrap_or_default();
     let job = if scenes.is_empty() { Job::read(&QUIET, &arguments)? } else { Job::of(&arguments, scenes)? };
     if is_written {
         job.check_folders(&[])?;
     }
     let results = job.results(&QUIET)?;
-    let mut report = job.report(&QUIET, &results)?;
+    let comparisons = job.comparisons(&QUIET, &results)?;
+    let entries = if is_written { job.trends(&comparisons, None)? } else { Vec::new() };
+    let report = job.report(&QUIET, &results, comparisons, &entries)?;
+    if is_written {
+        job.write(&report)?;
+    }
     let figures = report.scenes.iter().map(|scene| report::figure(scene, Theme::Standalone)).collect();
-    let comparison =
-        if is_written { job.write(&mut report, &Outputs::default())? } else { report.comparison() };
-    Ok(Compared { comparison, figures })
+    Ok(Compared { comparison: report.comparison(), figures })
 }
 
 /// An optimum.

@@ -10,15 +10,15 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file of kind seal-seat, the name of a shipped scene, or `-` for standard input
+    /// Scene file (seal-seat), name of a shipped scene, or `-` for standard input
     scene: String,
-    /// The mesh file, .vtu; a description .json appears beside it [default: the scene's name]
+    /// Mesh file (.vtu); its description (.json) is written next to it [default: the scene's name]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// How fine the mesh is
+    /// Resolution of the mesh
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
-    /// Elements this many times as large
+    /// Factor on the element size
     #[arg(long, default_value_t = 1.0, value_name = "X")]
     size_factor: f64,
     #[command(flatten)]

@@ -11,7 +11,6 @@ mod coverage;
 mod diff;
 mod doctor;
 mod external;
-mod film;
 mod gate;
 pub mod in_process;
 mod kinds;
@@ -46,15 +45,13 @@ use std::path::PathBuf;
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Folder of the stored references [default: $IMPACTCHECK_STORE, else the user's data folder; new ones of a checkout's own
-    /// scenes go to its fem_reference/solutions]. What is not in DIR is looked for among those shipped with the project, except
-    /// by `reference`, which fills DIR
+    /// Folder of the stored references [default: $IMPACTCHECK_STORE, or the user's data folder]
     #[arg(long, global = true, value_name = "DIR")]
     store: Option<PathBuf>,
-    /// Say nothing but results and errors
+    /// Print only results and errors
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// Say also what was reused and what was computed, and how long each took
+    /// Print also what was reused or computed, with times
     #[arg(long, short, global = true, conflicts_with = "quiet")]
     verbose: bool,
 }
@@ -64,58 +61,58 @@ const EXIT_STATUS: &str = "Exit status: 0 pass, 1 internal error, 2 usage, 3 inv
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Run a reduced model of a scene
+    /// Run a reduced model
     #[command(
         after_help = "Examples: impactcheck reduced scaled-plate-r10 --model B --modes 16\n          impactcheck reduced scaled-plate-r10 --model auto --tolerance 1%"
     )]
     Reduced(reduced::Arguments),
-    /// Find the stored finite-element solution of a scene, or compute it
+    /// Find or compute the finite-element reference
     #[command(after_help = "Example: impactcheck reference scaled-plate-r10 --resolution coarse")]
     Reference(reference::Arguments),
-    /// Compare reduced models with the reference and write the report; the main job
+    /// Compare reduced models with the reference, write the report
     #[command(
         after_help = "Examples: impactcheck compare scaled-plate-r10 --models A,B --out my-report\n          impactcheck compare my-impact.toml --watch"
     )]
     Compare(compare::OwnArguments),
-    /// Compare, and let the scene's tolerances decide the exit status
+    /// Compare, and fail if a tolerance is exceeded (for CI)
     #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
     Gate(gate::Arguments),
-    /// Tell which features of scenes are held against an independent solution, and how far models and solutions lie apart
+    /// List which features have been compared with an independent solution, and how models differ there
     #[command(after_help = "Example: impactcheck coverage --json")]
     Coverage(coverage::Arguments),
-    /// Tell what moved between two comparisons: of two commits, versions or machines
+    /// List what changed between two comparisons (commits, versions, machines)
     #[command(after_help = "Example: impactcheck diff old-report new-report --above 0.1%")]
     Diff(diff::Arguments),
     /// Mesh the seat of a seal-seat scene
     #[command(after_help = "Example: impactcheck mesh my-seat.toml --out my-seat.vtu")]
     Mesh(mesh::Arguments),
-    /// Compute one of the paper's tables or parameter studies, or a sweep of one's own
+    /// Run a parameter study of the paper, or your own sweep
     #[command(
         after_help = "Examples: impactcheck study fig16 --out figures\n          impactcheck study sweep my-sweep.toml --format parquet"
     )]
     Study(study::Arguments),
-    /// Tell how the results of a reduced model scatter with the inputs of a scene, and which input makes how much of it
+    /// Propagate input uncertainty through a reduced model (standard deviations, Sobol indices)
     #[command(
         after_help = "Example: impactcheck uncertainty examples/uncertainty/table1-r10.toml --out my-scatter"
     )]
     Uncertainty(uncertainty::Arguments),
-    /// Find inputs of a scene from measured histories, by least squares on a reduced model, and what these don't tell
+    /// Identify scene parameters from measured histories, and report which are not identifiable
     #[command(
         after_help = "Example: impactcheck calibrate my-impact.toml --over plate.thickness --measured run1.csv,run2.csv"
     )]
     Calibrate(calibrate::Arguments),
-    /// Find the numbers of a scene, within bounds, that transmit most energy
+    /// Find the design parameters that transmit most energy
     #[command(
         after_help = "Example: impactcheck optimise scaled-plate-r10 --over plate.radius=15mm..60mm --over plate.thickness=1mm..3mm"
     )]
     Optimise(optimise::Arguments),
-    /// Measure run time against error, with the peers in the same run
+    /// Measure run time against error, with other programs in the same run
     #[command(after_help = "Example: impactcheck bench --modes 16 --out my-bench")]
     Bench(bench::Arguments),
-    /// Try the time integration on random scenes over the whole admissible range
+    /// Test the time integration on random scenes
     #[command(after_help = "Example: impactcheck stress --cases 1000 --seed 1")]
     Stress(stress::Arguments),
-    /// Tell what is installed, and the command that installs what is missing (exit status 12 if anything is)
+    /// Show what is installed and how to install what is missing (exit status 12)
     #[command(after_help = "Example: impactcheck doctor")]
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors
@@ -123,11 +120,11 @@ enum Command {
     Schema,
     /// Write a valid scene file to start from
     ///
-    /// Beside it stands impactcheck.schema.json, what `impactcheck schema` prints: the scene's first line (#:schema) names it, and an
-    /// editor with a TOML language server (Taplo, Even Better TOML) completes and checks with it.
+    /// Writes impactcheck.schema.json too. Editors with a TOML language server (Taplo, Even Better TOML) use it to
+    /// complete and check the file.
     #[command(after_help = "Example: impactcheck new my-impact && impactcheck reduced my-impact.toml")]
     New(new::Arguments),
-    /// Print the completions of a shell
+    /// Print shell completions
     #[command(
         after_help = "Example: impactcheck completions bash > ~/.local/share/bash-completion/completions/impactcheck"
     )]
@@ -152,7 +149,7 @@ impl JsonArgument {
     }
 }
 
-/// What every command is told besides its own arguments.
+/// Options that all commands have.
 #[derive(Debug, Clone)]
 struct Context {
     store: Option<PathBuf>,

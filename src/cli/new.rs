@@ -1,4 +1,4 @@
-//! `impactcheck new`: a scene of one's own to start from.
+//! `impactcheck new`: a valid scene to start from.
 
 use super::Context;
 use super::schema::FILE;
@@ -12,12 +12,12 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Name of the scene, or its file; the file is NAME.toml
+    /// Name of the scene; the file is NAME.toml
     name: PathBuf,
-    /// What strikes what
+    /// Kind of the scene
     #[arg(long, default_value = KINDS[0].name(), value_parser = starters())]
     kind: Starter,
-    /// The file to write instead [default: NAME.toml]
+    /// File to write [default: NAME.toml]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -37,7 +37,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let name = named.rsplit(std::path::is_separator).next().unwrap_or(named);
     if file.exists() {
         return Err(Error::Usage(format!(
-            "{} exists and stays as it is; take another name, or another file with --out",
+            "{} exists and is not overwritten; choose another name, or another file with --out",
             file.display()
         )));
     }
@@ -47,7 +47,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     write_file(&file.with_file_name(FILE), crate::kinds::schema().to_string().as_bytes())?;
     write_file(&file, text.as_bytes())?;
     context.note(format_args!(
-        "{0}: change what you like, then `impactcheck reduced {0}` and, with FEniCSx, `impactcheck compare {0} --compute --out my-report`",
+        "wrote {0}; edit it, then: impactcheck reduced {0}\nwith FEniCSx also: impactcheck compare {0} --compute --out my-report",
         file.display()
     ));
     Ok(ExitStatus::Pass)

@@ -17,44 +17,44 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, or the name of a shipped scene
+    /// Scene file, or name of a shipped scene
     scene: String,
-    /// Field and bounds, such as plate.radius=2mm..10mm; fields that take the same value are joined by commas; repeat
-    /// for several variables
+    /// Variable and bounds, such as plate.radius=2mm..10mm; repeat for several variables. Fields joined by commas
+    /// take the same value
     #[arg(long, required = true, value_name = "FIELD=LOW..HIGH")]
     over: Vec<String>,
-    /// The result that is to be largest: a quantity of `reduced --json`, or intended_speed, a seal seat's velocity of the sphere along
-    /// the intended direction [default: efficiency; of a seal seat intended_speed]
+    /// Quantity to maximise: one of `reduced --json`, or intended_speed (seal seat: velocity of the sphere in the
+    /// intended direction) [default: efficiency; seal seat: intended_speed]
     #[arg(long, value_name = "NAME")]
     objective: Option<String>,
-    /// How far from the intended direction the sphere of a seal seat may fly
+    /// Seal seat: largest angle between the sphere's velocity and the intended direction
     #[arg(long, value_name = "ANGLE")]
     within: Option<String>,
-    /// Mesh (.vtu) of the seat of a seal-seat scene, which follows its dimensions [default: a coarse one]
+    /// Seal seat: mesh (.vtu) that is adapted to the dimensions [default: a coarse one]
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Reduced model [default: the scene's, else B, which needs no mesh at every point]
+    /// Reduced model [default: the scene's, or B, which needs no mesh]
     #[arg(long)]
     model: Option<Model>,
-    /// Number of modes [default: as `reduced`]
+    /// Number of modes [default: as in `reduced`]
     #[arg(long, value_name = "N")]
     modes: Option<usize>,
-    /// Seed of the samples of a search over several variables
+    /// Seed of the samples, for several variables
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Number of these samples [default: by the number of variables]
+    /// Number of samples [default: from the number of variables]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=100_000))]
     samples: Option<u32>,
-    /// Maximise this quantile of the efficiency instead, over what the scene's [uncertainty] makes of every design [default quantile: 5%]
+    /// Robust design: maximise this quantile of the efficiency under the scene's [uncertainty] [default quantile: 5%]
     #[arg(long, value_name = "QUANTILE", num_args = 0..=1, default_missing_value = "5%", value_parser = probability)]
     robust: Option<f64>,
-    /// Hold the optimum against the finite-element reference: the stored one, else computed (needs FEniCSx)
+    /// Compare the optimum with its finite-element reference, stored or computed (needs FEniCSx)
     #[arg(long)]
     verify: bool,
-    /// Resolution of the reference of --verify
+    /// Resolution of that reference
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
-    /// Write the optimum (JSON, SVG, PNG) and its scene (TOML) into this folder
+    /// Folder for the optimum (JSON, SVG, PNG) and its scene (TOML)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -169,8 +169,8 @@ fn verify(
     let scene = problem.scene(&optimum.values())?;
     let stored = reference_of(context, arguments, &scene)?;
     let outcome = problem.outcome(&optimum.values())?;
-    let mut comparison = compare_scene(&scene, &stored.outcome, &[outcome]);
-    let model = comparison.models.pop().ok_or_else(|| Error::Internal("one model was compared".into()))?;
+    let model = compare_scene(&scene, &stored.outcome, &[outcome]).models.pop();
+    let model = model.ok_or_else(|| Error::Internal("one model was compared".into()))?;
     Ok(Verification {
         verdict: model.verdict.name(),
         missing: None,
@@ -195,7 +195,7 @@ fn write(context: &Context, folder: &Path, problem: &Problem, document: &Optimum
         ("optimum.json", (json + "\n").into_bytes()),
         ("history.csv", document.optimum.history_csv()?),
         ("optimum.toml", problem.scene_text(&document.optimum.values())?.into_bytes()),
-        ("optimum.png", report::png(&svg, 3.0)?),
+        ("optimum.png", crate::plot::png(&svg, 3.0)?),
         ("optimum.svg", svg.into_bytes()),
     ];
     for (name, bytes) in files {
@@ -229,7 +229,7 @@ fn table(document: &OptimumDocument) -> String {
     )];
     if let Some(robust) = &optimum.robust {
         lines.push(format!(
-            "  {} % quantile of the {} under scatter: {:.5} ({} samples of every design)",
+            "  {} % quantile of the {} with uncertain inputs: {:.5} ({} samples of every design)",
             100.0 * robust.probability,
             words(optimum.objective).to_lowercase(),
             robust.quantile,

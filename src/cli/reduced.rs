@@ -14,14 +14,14 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file, the name of a shipped scene, or `-` for standard input
+    /// Scene file, name of a shipped scene, or `-` for standard input
     scene: String,
     #[command(flatten)]
     asked: ModelRequest,
-    /// Write displacement, velocity and force over time to this file (.csv or .parquet)
+    /// Write displacements, velocities and forces over time to this file (.csv or .parquet)
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
-    /// Write a page with results, curves and, of scenes that have one, the flight to this file (.html)
+    /// Write a page with results, curves and flight to this file (.html)
     #[arg(long, value_name = "FILE")]
     page: Option<PathBuf>,
     #[command(flatten)]
@@ -141,7 +141,7 @@ pub fn table(summary: &Summary) -> String {
     lines
         .extend(errors.iter().filter_map(|(name, error)| Some(format!("  {name:<24} {:>14.1e}", (*error)?))));
     let seconds = with_unit(summary.solve_seconds, prefixed("s", summary.solve_seconds), 3);
-    lines.extend(summary.steps.map(|steps| format!("  {steps} steps in {seconds}, set-up apart")));
+    lines.extend(summary.steps.map(|steps| format!("  {steps} steps in {seconds}, excluding set-up")));
     lines.extend(summary.choice.as_ref().map(asked_model::told));
     lines.join("\n")
 }

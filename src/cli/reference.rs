@@ -17,31 +17,31 @@ const MOST: i64 = 100_000;
 pub struct Arguments {
     #[command(subcommand)]
     import: Option<Import>,
-    /// Scene file, the name of a shipped scene, or `-` for standard input
+    /// Scene file, name of a shipped scene, or `-` for standard input
     #[arg(required = true)]
     scene: Option<String>,
-    /// How fine the mesh is: coarse, paper or fine
+    /// Resolution of the mesh: coarse, paper (standard) or fine
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
-    /// Which program: this one, or CalculiX (`ccx`) as a second, independent one; dry elastic spheres on a plate
+    /// Solver: this project's, or CalculiX (`ccx`) as an independent one (dry impacts of elastic spheres on a plate)
     #[arg(long, value_enum, default_value_t = Solver::Fenicsx)]
     solver: Solver,
-    /// Refine until the 95 % band of efficiency and force peaks is at most this, for example 0.2%
+    /// Refine until the uncertainty (95 %) of efficiency and peak forces is at most this, such as 0.2%
     #[arg(long, value_name = "ERROR", conflicts_with = "resolution")]
     target_error: Option<TargetError>,
     /// Number of processes (three-dimensional references only)
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST))]
     np: u32,
-    /// Processor cores for the time loop, all processes together [default: those there are]
+    /// Processor cores for the time loop, all processes together [default: all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST))]
     threads: Option<u32>,
-    /// Compute even if there is a stored solution
+    /// Compute even if a solution is stored
     #[arg(long)]
     fresh: bool,
-    /// Write stress fields (.vtu) at these times, in s
+    /// Write stress fields (.vtu) at these times in s
     #[arg(long, value_delimiter = ',', value_name = "T,…")]
     stress_at: Vec<f64>,
-    /// Write fields (.vtu and a .pvd series) at this many instants over the run, or somewhat more
+    /// Write at least this many fields over the run (.vtu, and .pvd for ParaView)
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=MOST))]
     fields: u32,
     #[command(flatten)]
@@ -57,7 +57,7 @@ enum Solver {
 
 #[derive(Debug, Subcommand)]
 enum Import {
-    /// Take another program's result of a scene into the store, as the reference `--resolution imported`
+    /// Import another program's result as the reference `--resolution imported`
     #[command(
         after_help = "Example: impactcheck reference import my-impact.toml --from abaqus.csv --map examples/import/abaqus.toml"
     )]
@@ -66,13 +66,13 @@ enum Import {
 
 #[derive(Debug, Args)]
 struct ImportArguments {
-    /// Scene file or the name of a shipped scene
+    /// Scene file, or name of a shipped scene
     scene: String,
-    /// The result: a table of text (.csv, .rpt, ...), or CalculiX's .dat or .frd
+    /// Result file: a text table (.csv, .rpt, ...), or CalculiX's .dat or .frd
     #[arg(long, value_name = "FILE")]
     from: PathBuf,
-    /// How it is to be read (TOML): columns, units, signs, offsets, program, stated uncertainty [default: headings such as
-    /// `time [us],outer_velocity [mm/s]`]
+    /// Description of the table (TOML): columns, units, signs, offsets, program, uncertainty [default: headings such
+    /// as `time [us],outer_velocity [mm/s]`]
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
     #[command(flatten)]
@@ -151,7 +151,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     };
     let convergence = stored.outcome.summary.convergence.as_ref();
     if let Some(reached) = convergence.and_then(|c| c["relative_error"].as_f64()) {
-        context.note(format_args!("95 % band of efficiency and force peaks: {:.2} %", 100.0 * reached));
+        context
+            .note(format_args!("uncertainty (95 %) of efficiency and peak forces: {:.2} %", 100.0 * reached));
     }
     for warning in &stored.outcome.summary.warnings {
         context.note(format_args!("warning: {warning}"));
@@ -193,10 +194,10 @@ pub(super) fn require_sound(scene: &Scene, stored: &Stored) -> Result<()> {
 
 /// What is wrong with what the store has.
 pub fn problem(scene: &Scene, resolution: Resolution, lookup: &Lookup) -> String {
-    let which = format!("the {} reference of `{}`", resolution.argument(), scene.name);
+    let which = format!("the reference of `{}` (resolution `{}`)", scene.name, resolution.argument());
     match lookup {
         Lookup::Found(_) => format!("{which} is there"),
-        Lookup::Missing => format!("{which} is missing"),
+        Lookup::Missing => format!("{which} is missing: it is not computed yet"),
         Lookup::Stale { reason } => format!("{which} is stale: {reason}"),
         Lookup::Damaged { file, reason } => format!("{which} is damaged: {}: {reason}", file.display()),
     }

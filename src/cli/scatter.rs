@@ -2,8 +2,8 @@
 
 use super::Context;
 use super::progress::Counter;
-use crate::comparison::SceneComparison;
 use crate::error::Result;
+use crate::result::Outcome;
 use crate::scene::{Model, Scene, Template};
 use crate::uncertainty::{Request, Scatter, study};
 use std::collections::BTreeMap;
@@ -17,7 +17,7 @@ pub(super) fn scatter(
     context: &Context,
     file: &Path,
     scene: &Scene,
-    comparison: &SceneComparison,
+    reduced: &[Outcome],
 ) -> Result<BTreeMap<String, Scatter>> {
     if scene.uncertainty.is_none() {
         return Ok(BTreeMap::new());
@@ -26,13 +26,15 @@ pub(super) fn scatter(
     let mut scatters = BTreeMap::new();
     for model in [Model::A, Model::B, Model::C] {
         let name = model.to_string();
-        let compared = comparison.models.iter().find(|compared| compared.model == name);
+        let mut summaries = reduced.iter().map(|outcome| &outcome.summary);
+        let compared = summaries.find(|summary| summary.model.as_ref() == Some(&name));
         if compared.is_none() && model != Model::C {
             continue;
         }
-        let counter = Counter::new(context, &format!("{}: scatter of model {name}", scene.name));
+        let counter =
+            Counter::new(context, &format!("{}: propagated input uncertainty, model {name}", scene.name));
         let request = Request {
-            modes: compared.and_then(|model| model.summary.modes),
+            modes: compared.and_then(|summary| summary.modes),
             ..Request::new(model, SCATTER_ACCURACY)
         };
         let found = study((file, &template), &request, None, &|progress| counter.show(progress))?;

@@ -1,54 +1,35 @@
-//! CalculiX's solutions for a comparison, beside the references.
+//! CalculiX's solutions, which a comparison holds against the references.
 
 use super::Context;
+use super::compare_arguments::Arguments;
 use super::reference::require_sound;
 use super::stored_references::look_up;
 use crate::error::Result;
 use crate::kinds;
-use crate::reference::{Resolution, Stored};
+use crate::reference::Stored;
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
 
-/// How CalculiX's solutions are asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum CalculixRequest {
-    /// They are shown where they are stored and sound.
-    Shown,
-    /// They have to be there.
-    Required {
-        /// Those that are missing are computed.
-        compute: bool,
-    },
-}
-
-impl CalculixRequest {
-    /// Of `--reference-check` and `--compute`.
-    pub(super) fn of(required: bool, compute: bool) -> Self {
-        if required { CalculixRequest::Required { compute } } else { CalculixRequest::Shown }
-    }
-}
-
-/// CalculiX's solution of `scene`, whose file is `file`, as fine as a reference at `resolution`; `None` if CalculiX does not take
-/// the scene or has no such fineness.
+/// CalculiX's solution of `scene`, whose file is `file`, as fine as the references of a comparison with these `arguments`; `None` if
+/// CalculiX does not take the scene or has no such fineness. Unless `--reference-check` requires it, it is shown where it is stored
+/// and sound.
 ///
 /// # Errors
-/// Of one that has to be there: as [`look_up`], and if it contradicts itself.
-pub(super) fn beside(
+/// Of one that is required: as [`look_up`], and if it contradicts itself.
+pub(super) fn independent(
     context: &Context,
     file: &Path,
     scene: &Scene,
-    resolution: Resolution,
-    asked: CalculixRequest,
+    arguments: &Arguments,
 ) -> Result<Option<Stored>> {
-    let Some(resolution) = resolution.by_calculix().filter(|_| kinds::of(scene).calculix_takes(scene)) else {
-        return Ok(None);
-    };
-    let CalculixRequest::Required { compute } = asked else {
+    let taken = kinds::of(scene).calculix_takes(scene);
+    let Some(resolution) = arguments.resolution().by_calculix().filter(|_| taken) else { return Ok(None) };
+    if !arguments.reference_check {
         let found = context.store().for_scene_in(file).find_here_or_shipped(scene, resolution).found();
         return Ok(found.filter(|stored| require_sound(scene, stored).is_ok()));
-    };
+    }
     let scenes: [(PathBuf, Scene); 1] = [(file.to_path_buf(), scene.clone())];
-    let found = look_up(context, resolution, compute, &scenes)?.pop();
+    let found = look_up(context, resolution, arguments.compute, &scenes)?.pop();
     found.iter().try_for_each(|stored| require_sound(scene, stored))?;
     Ok(found)
 }

@@ -10,13 +10,13 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub struct CompletionArguments {
-    /// The shell
+    /// Shell
     shell: Shell,
 }
 
 #[derive(Debug, Args)]
 pub struct ManArguments {
-    /// Write a page per command into this folder instead of the program's page to standard output
+    /// Folder for one page per command [default: the main page on standard output]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

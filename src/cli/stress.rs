@@ -11,10 +11,10 @@ pub struct Arguments {
     /// Number of random scenes
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..))]
     cases: u64,
-    /// Seed of the first scene; the others follow
+    /// Seed of the first scene
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
-    /// Print the result of every scene instead, to compare two programs bit for bit
+    /// Print all results, to compare two versions bit for bit
     #[arg(long, requires = "json")]
     results: bool,
     #[command(flatten)]
@@ -57,13 +57,13 @@ fn table(report: &StressReport) -> String {
     }
     if !report.beyond_model.is_empty() {
         lines.push(format!(
-            "  refused, since the plate bends around the inner body in the fluid, or rattles or trembles endlessly: {}",
+            "  refused, since the plate bends around the inner body in the fluid, or by contact chatter without end: {}",
             report.beyond_model.len()
         ));
     }
     let sweep = &report.sweep;
     lines.push(format!(
-        "  as points of a sweep: {} of {} have not converged and say so; {} are wrong and do not say so (bound 1 in 1000)",
+        "  as points of a sweep: {} of {} have not converged (stated); {} are wrong without a statement (bound 1 in 1000)",
         sweep.unconverged,
         sweep.points,
         sweep.wrong.len()

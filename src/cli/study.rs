@@ -18,10 +18,10 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Own {
-    /// Vary numbers of a scene as a sweep file says
+    /// Run a parameter sweep from a sweep file
     #[command(after_help = sweep::EXAMPLE)]
     Sweep(sweep::SweepArguments),
-    /// Join the records of a sweep's shards into one table
+    /// Join the shards of a sweep into one table
     Merge(sweep::Arguments),
 }
 
@@ -32,16 +32,16 @@ struct Named {
     /// seal-seat (section 4.4), seal-seat-direction, seal-seat-cost
     #[arg(required = true)]
     name: Option<String>,
-    /// Reduced model, for the studies of figures [default: B, with which the paper made them]
+    /// Reduced model, for the studies of figures [default: B, as in the paper]
     #[arg(long)]
     model: Option<Model>,
     /// Number of random scenes, for the study auto [default: 1000]
     #[arg(long, value_name = "N")]
     cases: Option<usize>,
-    /// Seed that they are drawn with, for the study auto [default: 3]
+    /// Seed of the random scenes, for the study auto [default: 3]
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
-    /// Write the study as JSON, CSV, Markdown and, if it is a figure, SVG and PNG into this folder
+    /// Folder for the results (JSON, CSV, Markdown; figures as SVG and PNG)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]

@@ -15,11 +15,11 @@ use std::time::Instant;
 
 /// What a sweep file looks like, for `--help`.
 pub const EXAMPLE: &str = r#"A sweep file (TOML):
-  scene     = "scaled-plate-r10"     # a file beside this one, or a shipped scene
+  scene     = "scaled-plate-r10"     # a file in this folder, or a shipped scene
   model     = "B"                    # A, B, C or several, ["B", "C"]; absent = the scene's, else B; a seal seat has C only
   modes     = 16                     # absent = the scene's, else the model's
   tolerance = 1e-4                   # relative error of efficiency, velocities, force peaks and times; absent = 1e-3
-  mesh      = "seat.vtu"             # of a seal seat, beside this file; absent = a coarse one
+  mesh      = "seat.vtu"             # of a seal seat, in this folder; absent = a coarse one
   sampling  = "grid"                 # or "latin-hypercube", with samples = 10000 and seed = 1
 
   [[vary]]
@@ -35,7 +35,7 @@ pub const EXAMPLE: &str = r#"A sweep file (TOML):
 
 Where one or two parameters vary, over 100 000 points at most, the folder gets sweep.svg: curves
 over one parameter, a line per model; a map in colours over two, one per model. It has the
-stored references (of shipped scenes and of those beside the swept one) that differ from the
+stored references (of shipped scenes and of those in the folder of the swept one) that differ from the
 scene in the varied fields alone, with their bands, and where the paper's section 4.1 expects
 the optimum. Several models number the points model after model and have a column `model`.
 
@@ -54,16 +54,16 @@ const MOST_DRAWN: usize = 100_000;
 pub struct Arguments {
     /// Sweep file, see below
     file: PathBuf,
-    /// Folder of the records and of the table [default: the file's name without .toml, in this folder, with `-sweep`]
+    /// Folder of the results [default: the sweep file's name with `-sweep`]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Format of the table: csv or parquet
     #[arg(long, default_value = "csv")]
     format: TableFormat,
-    /// Quantities that are drawn
+    /// Quantities to draw
     #[arg(long = "quantity", value_delimiter = ',', default_value = "efficiency", value_name = "NAME,…")]
     quantities: Vec<String>,
-    /// Write the drawing to this file as well (.svg, .pdf or .png)
+    /// Write the figure to this file (.svg, .pdf or .png)
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
     #[command(flatten)]
@@ -74,7 +74,7 @@ pub struct Arguments {
 pub struct SweepArguments {
     #[command(flatten)]
     common: Arguments,
-    /// Run only part i of n; `study merge` joins the parts
+    /// Run part i of n only; `study merge` joins the parts
     #[arg(long, value_name = "i/n", conflicts_with = "figure")]
     shard: Option<Shard>,
 }

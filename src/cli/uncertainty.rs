@@ -17,28 +17,27 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Scene file with a table [uncertainty], or the name of a shipped scene
+    /// Scene file with a table [uncertainty], or name of a shipped scene
     scene: String,
     /// Reduced model [default: C]
     #[arg(long, default_value = "C", hide_default_value = true)]
     model: Model,
-    /// Number of modes [default: as `reduced`]
+    /// Number of modes [default: as in `reduced`]
     #[arg(long, value_name = "N")]
     modes: Option<usize>,
-    /// Samples of the inputs, or auto: twice as many again and again until --accuracy is reached. Each takes an impact per input, and
-    /// two more
+    /// Number of samples, or auto: doubled until --accuracy is reached. A sample takes two impacts and one per input
     #[arg(long, default_value = "auto", value_name = "N|auto", value_parser = samples)]
     samples: RowCount,
-    /// How well auto has to know mean and standard deviation: half width of their 95 % intervals over the standard deviation
+    /// Accuracy of auto: half width of the 95 % intervals of mean and standard deviation, over the standard deviation
     #[arg(long, default_value = "2%", value_name = "SHARE", value_parser = asked_model::tolerance)]
     accuracy: f64,
-    /// Quantities that auto and the tables are about
+    /// Quantities of auto and of the tables
     #[arg(long = "quantity", value_delimiter = ',', default_value = "efficiency,outer_force_peak,inner_force_peak", value_name = "NAME,…", value_parser = quantity)]
     quantities: Vec<String>,
-    /// Another one gives other samples
+    /// Seed of the samples
     #[arg(long, default_value_t = 1)]
     seed: u32,
-    /// Folder of the samples, the results (JSON) and the figure (SVG, PNG); a study that was interrupted goes on there
+    /// Folder of samples, results (JSON) and figure (SVG, PNG); an interrupted study continues there
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Format of the samples: csv or parquet
@@ -121,9 +120,9 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     }
     if let (Some(folder), Some(svg)) = (&arguments.out, drawn) {
         let json = serde_json::to_string_pretty(&scatter)
-            .map_err(|e| Error::Internal(format!("writing the scatter as JSON: {e}")))?;
+            .map_err(|e| Error::Internal(format!("writing the results as JSON: {e}")))?;
         write_file(&folder.join("uncertainty.json"), (json + "\n").as_bytes())?;
-        write_file(&folder.join("uncertainty.png"), &report::png(&svg, 2.0)?)?;
+        write_file(&folder.join("uncertainty.png"), &crate::plot::png(&svg, 2.0)?)?;
         write_file(&folder.join("uncertainty.svg"), svg.as_bytes())?;
         context.note(format_args!("wrote {}", folder.join("uncertainty.svg").display()));
     }

@@ -13,7 +13,7 @@ pub(super) fn known(context: &Context, found: &[(&Stored, Vec<Validation>)]) -> 
     let store = context.store();
     let told = |result: Result<Vec<Validation>>| {
         result.unwrap_or_else(|error| {
-            context.note(format_args!("the map of validated scenes is not complete: {error}"));
+            context.note(format_args!("the map of compared scenes is not complete: {error}"));
             Vec::new()
         })
     };

@@ -71,8 +71,8 @@ impl BandVerdict {
     /// For people.
     pub fn words(self) -> &'static str {
         match self {
-            BandVerdict::Within => "within the band",
-            BandVerdict::Beyond => "beyond the band",
+            BandVerdict::Within => "within the uncertainty",
+            BandVerdict::Beyond => "beyond the uncertainty",
         }
     }
 }
@@ -184,12 +184,14 @@ impl Discrepancy {
         rules.refuse(self.verdict) || (rules.require_tolerances && self.lacks_reference())
     }
 
-    /// Judges the row by the 95 % band of the difference itself, of half width `band`.
-    pub(super) fn judge_by(&mut self, band: f64) {
-        self.difference_uncertainty = Some(band);
-        self.band_verdict = self.difference.and_then(|error| BandVerdict::of(error, band));
-        if let Some(tolerance) = self.tolerance {
-            self.verdict = Verdict::within(self.checked(), band, tolerance);
+    /// The row judged by the 95 % band of the difference itself, of half width `band`.
+    pub(super) fn judged_by(self, band: f64) -> Self {
+        let verdict = self.tolerance.map(|tolerance| Verdict::within(self.checked(), band, tolerance));
+        Discrepancy {
+            difference_uncertainty: Some(band),
+            band_verdict: self.difference.and_then(|error| BandVerdict::of(error, band)),
+            verdict: verdict.unwrap_or(self.verdict),
+            ..self
         }
     }
 

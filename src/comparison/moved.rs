@@ -1,4 +1,4 @@
-//! What moved between two comparisons, of two commits, versions or machines.
+//! What changed between two comparisons, of two commits, versions or machines.
 
 use crate::error::{Error, Result};
 use crate::result::SCHEMA_VERSION;
@@ -123,7 +123,7 @@ impl ComparisonDocument {
     }
 }
 
-/// What moved from `a` to `b` by more than the share `above` of its magnitude.
+/// What changed from `a` to `b` by more than the share `above` of its magnitude.
 pub fn moved<'d>(a: &'d ComparisonDocument, b: &'d ComparisonDocument, above: f64) -> Moves {
     let mut moves = Moves { schema_version: SCHEMA_VERSION, moved: Vec::new(), verdicts: Vec::new() };
     let mut told = BTreeSet::new();

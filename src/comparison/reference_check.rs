@@ -9,7 +9,7 @@ use serde::Serialize;
 pub struct ReferenceCheck {
     /// Name of the other program.
     pub program: String,
-    /// Whether all rows are within their joint bands.
+    /// Whether all rows are within their joint uncertainties.
     pub verdict: BandVerdict,
     /// One entry per quantity that both determine with a band.
     pub rows: Vec<ReferenceRow>,
@@ -43,7 +43,7 @@ pub struct ReferenceRow {
 }
 
 impl ReferenceCheck {
-    /// `other` beside `reference`, both of the same scene. Numbers of contacts, which have no band, are left out.
+    /// `other` beside `reference`, both of the same scene. Numbers of contacts, which have no band, are omitted.
     pub fn of(reference: &Summary, other: &Summary) -> Self {
         let rows: Vec<ReferenceRow> = reference
             .quantities
@@ -58,8 +58,8 @@ impl ReferenceCheck {
     /// For people.
     pub fn words(&self) -> &'static str {
         match self.verdict {
-            BandVerdict::Within => "within the joint bands",
-            BandVerdict::Beyond => "beyond the joint bands",
+            BandVerdict::Within => "agrees",
+            BandVerdict::Beyond => "differs",
         }
     }
 }
@@ -124,7 +124,7 @@ mod tests {
         );
         set(&mut other, "outer_force_peak", 94.9, 4.0);
         let beyond = ReferenceCheck::of(&own, &other);
-        assert_eq!((beyond.verdict, beyond.words()), (BandVerdict::Beyond, "beyond the joint bands"));
+        assert_eq!((beyond.verdict, beyond.words()), (BandVerdict::Beyond, "differs"));
         *other.quantities.value_mut("outer_force_peak").expect("there") = None;
         let open = ReferenceCheck::of(&own, &other);
         assert_eq!((open.rows.len(), open.verdict), (beyond.rows.len() - 1, BandVerdict::Within));

@@ -2,17 +2,15 @@
 
 use super::discrepancy::Discrepancy;
 use super::verdict::Verdict;
+use crate::format::{prefixed, with_unit};
 use crate::result::Summary;
 
 /// Smallest relative band that a reference can be asked for.
 const SMALLEST_TARGET: f64 = 1e-4;
 
-/// Says of every undecided row what would decide it.
-pub(super) fn tell(rows: &mut [Discrepancy], reference: &Summary) {
-    let reached = targeted_band(reference);
-    for row in rows {
-        row.would_decide = (row.verdict == Verdict::Undecided).then(|| sentence(row, reached)).flatten();
-    }
+/// What would decide `row` if it is undecided.
+pub(super) fn advice(row: &Discrepancy, reference: &Summary) -> Option<String> {
+    (row.verdict == Verdict::Undecided).then(|| sentence(row, targeted_band(reference))).flatten()
 }
 
 /// Largest relative band of what `--target-error` is about: efficiency and force peaks.
@@ -30,8 +28,9 @@ fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
     }
     let (tolerance, band) = (row.tolerance?, row.band()?);
     let needed = (tolerance - row.checked()).abs();
-    let unit = if row.unit == "1" { String::new() } else { format!(" {}", row.unit) };
-    let wish = format!("a band of at most {needed:.1e}{unit} instead of {band:.1e}{unit}");
+    let to = prefixed(&row.unit, row.reference.unwrap_or(band));
+    let [needed_value, now] = [rounded_down(needed), band].map(|value| with_unit(value, to, 2));
+    let uncertainty = format!("an uncertainty of at most {needed_value} is needed (now {now})");
     // what a target is about is the reference's own band
     let reached = reached.filter(|_| row.difference_uncertainty.is_none());
     let target = reached.map(|reached| reached * needed / band);
@@ -39,11 +38,11 @@ fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
         Some(target) if target >= SMALLEST_TARGET => {
             let target = rounded_down(100.0 * target);
             format!(
-                "{wish} would decide it: a reference computed with --target-error {target}% (the gate's --resolution {target}%), or a finer --resolution"
+                "{uncertainty}: compute the reference with --target-error {target}% and pass --resolution {target}%, or take a finer --resolution"
             )
         }
-        None if band.is_finite() => format!("{wish} would decide it: a finer --resolution"),
-        _ => format!("{wish} would decide it, which no mesh gives; state a tolerance wider than the band"),
+        None if band.is_finite() => format!("{uncertainty}: take a finer --resolution"),
+        _ => format!("{uncertainty}, which no mesh gives: specify a tolerance wider than the uncertainty"),
     })
 }
 
@@ -60,6 +59,7 @@ mod tests {
     use super::{rounded_down, sentence};
     use crate::comparison::Verdict;
     use crate::comparison::discrepancy::{Discrepancy, Scales};
+    use crate::format::{prefixed, with_unit};
     use crate::scene::Tolerance;
 
     fn row(reduced: f64, band: f64) -> Discrepancy {
@@ -73,7 +73,10 @@ mod tests {
         for (reduced, needed, verdict) in [(100.4, 0.6, Verdict::Pass), (101.4, 0.4, Verdict::Fail)] {
             let told = sentence(&row(reduced, 2.0), Some(0.05)).expect("undecided");
             assert!(
-                told.starts_with(&format!("a band of at most {needed:.1e} N instead of 2.0e0 N")),
+                told.starts_with(&format!(
+                    "an uncertainty of at most {} is needed (now 2.0 N)",
+                    with_unit(rounded_down(needed), prefixed("N", 1.0), 2)
+                )),
                 "{told}"
             );
             assert_eq!(row(reduced, 2.0).verdict, Verdict::Undecided);
@@ -82,7 +85,7 @@ mod tests {
             let exactly: f64 = 1.0 - (reduced - 100.0_f64).abs();
             let target = rounded_down(100.0 * 0.05 * exactly.abs() / 2.0);
             assert!(
-                told.contains(&format!("--target-error {target}% (the gate's --resolution {target}%)")),
+                told.contains(&format!("--target-error {target}% and pass --resolution {target}%")),
                 "{told}"
             );
         }
@@ -94,6 +97,6 @@ mod tests {
         let told = sentence(&row(100.999, 2.0), Some(0.05)).expect("undecided");
         assert!(told.contains("which no mesh gives") && !told.contains("--target-error"), "{told}");
         let told = sentence(&row(100.4, 2.0), None).expect("undecided");
-        assert!(told.ends_with("would decide it: a finer --resolution"), "{told}");
+        assert!(told.ends_with(": take a finer --resolution"), "{told}");
     }
 }

@@ -72,7 +72,7 @@ pub fn known_column(name: &str, known: &[Curve]) -> Result<(&'static str, &'stat
         let names: Vec<&str> = all.by_ref().map(|(name, _)| name).collect();
         let hint = suggestion(name, names.iter().copied()).map(|near| format!("; did you mean `{near}`?"));
         format!(
-            "`{name}` is no column that is known{} (there are: {})",
+            "`{name}` is not a known column{} (there are: {})",
             hint.unwrap_or_default(),
             names.join(", ")
         )
@@ -96,7 +96,7 @@ pub fn read(rows: &mut csv::Reader<&[u8]>, columns: &[Column], fewest: usize) ->
         return Err("there is no column `time`".into());
     };
     if columns.len() < 2 {
-        return Err("there is no signal beside the time".into());
+        return Err("there is no signal except the time".into());
     }
     let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
     for row in rows.records() {

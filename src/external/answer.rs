@@ -189,7 +189,7 @@ fn syntax(text: &str, error: &serde_json::Error) -> String {
     let line = text.lines().nth(error.line().saturating_sub(1)).unwrap_or_default();
     let at: String = line.chars().skip(error.column().saturating_sub(1)).take(SHOWN).collect();
     let help = match ["NaN", "aN", "Inf", "-Inf", "nan", "inf"].iter().any(|word| at.starts_with(word)) {
-        true => "; JSON knows no NaN and no infinity: write null for what is not determined",
+        true => "; JSON has no NaN and no infinity: write null for what is not determined",
         false => "; the document has to be all of the standard output, messages belong on standard error",
     };
     format!("it is no JSON document: {error}, at `{at}`{help}")

@@ -83,7 +83,7 @@ pub struct AlignedRecord {
     /// Standard deviation of every signal in free flight. Shape (signals).
     #[serde(skip)]
     pub noise: Vec<f64>,
-    /// Time in s from the first touch at which something else than the impact acts on a signal; infinite without. Shape (signals).
+    /// Time in s from the first contact at which something else than the impact acts on a signal; infinite without. Shape (signals).
     #[serde(skip)]
     pub ends: Vec<f64>,
     /// Time in s from the first touch. Shape (samples).
@@ -268,8 +268,8 @@ impl Alignment<'_> {
         if before.len() < FEWEST {
             let early = samples().take_while(|(t, _)| *t < 0.0).count();
             return Err(Error::Scene(miette::miette!(
-                help = "record from before the first touch, at least some periods of the bandwidth",
-                "{}: {} has {early} samples before the first touch, {} of them earlier than {:.3e} s before it, as far as the bandwidth of {:.3e} Hz smears the impact; at least {FEWEST} are needed there for its offset",
+                help = "record from before the first contact, at least some periods of the bandwidth",
+                "{}: {} has {early} samples before the first contact, {} of them earlier than {:.3e} s before it, as far as the bandwidth of {:.3e} Hz smears the impact; at least {FEWEST} are needed there for its offset",
                 self.record.file.display(),
                 channel.quantity,
                 before.len(),

@@ -10,11 +10,12 @@ use super::record::Record;
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics, MonotoneCubic, SampledCurve};
 use crate::error::{Error, Result};
 use crate::kinds;
-use crate::result::{CUT, Curve, Outcome};
+use crate::result::{CUT, Curve, Outcome, Summary};
 use crate::scene::Scene;
 use crate::uncertainty::Scatter;
-use crate::uncertainty::validation::Assessment;
+use crate::uncertainty::validation::{Assessment, numerical, scatter_of};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// Measured records of one scene beside its models; part of the comparison document.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -65,41 +66,6 @@ impl Series {
     }
 }
 
-impl Measured {
-    /// Standard uncertainty of the mean of the measured efficiencies: their scatter and the noise of each, both over the root of their number.
-    /// `None` if nothing is known of it.
-    pub fn standard_uncertainty(&self) -> Option<f64> {
-        let series = self.efficiency.as_ref()?;
-        let count = series.count as f64;
-        let impacts = self.records.iter().filter(|record| !record.is_copy);
-        let bands = impacts.filter_map(|record| record.efficiency_uncertainty);
-        let noise = bands.map(|band| (band / NORMAL_95).powi(2)).sum::<f64>() / count;
-        let scatter = series.standard_deviation.map_or(0.0, |deviation| deviation.powi(2));
-        // the scatter has the noise in it already
-        Some((scatter.max(noise) / count).sqrt()).filter(|u| *u > 0.0)
-    }
-
-    /// Holds the partners' efficiencies against what uncertain inputs leave open; `scatter` gives that of a partner, `numerical` its
-    /// standard numerical uncertainty, by its name.
-    pub fn add_validation<'s>(
-        &mut self,
-        scatter: impl Fn(&str) -> Option<&'s Scatter>,
-        numerical: impl Fn(&str) -> Option<f64>,
-    ) {
-        let u_d = self.standard_uncertainty();
-        let values = self.efficiency.as_ref().map_or(&[][..], |series| &series.values);
-        for partner in &mut self.partners {
-            let of = scatter(&partner.partner).and_then(|scatter| scatter.quantities.get("efficiency"));
-            let Some((error, of)) = partner.efficiency_difference.zip(of) else { continue };
-            partner.validation = Assessment::of(error, (numerical(&partner.partner), u_d), of);
-            // the distribution about the partner's own result
-            let shift = partner.efficiency.unwrap_or(f64::NAN) - of.nominal.unwrap_or(f64::NAN);
-            let moved: Vec<f64> = of.values.iter().map(|value| value + shift).collect();
-            partner.area = Area::between(&moved, values).filter(|area| area.area.is_finite());
-        }
-    }
-}
-
 /// The reference or a model against the measurement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Partner {
@@ -122,7 +88,8 @@ pub struct Partner {
     pub filtered: Vec<SampledCurve>,
 }
 
-/// Aligns `records` with the reference and compares reference and models with the first of them.
+/// Aligns `records` with the reference and compares reference and models with the first of them; `scatters` are the propagated
+/// uncertainties of the scene's inputs, by the name of the model, empty if they are certain.
 ///
 /// # Errors
 /// [`Error::Reference`] if the reference's history can't be used, [`Error::Scene`] if a record can't be aligned,
@@ -133,6 +100,7 @@ pub fn compare(
     reference: &Outcome,
     reduced: &[Outcome],
     (bandwidth, speed): (f64, Speed),
+    scatters: &BTreeMap<String, Scatter>,
 ) -> Result<Measured> {
     let kind = kinds::of(scene);
     let approach = kind.approach(scene)?;
@@ -143,7 +111,7 @@ pub fn compare(
     let ends = ContactEnds::of(&reference.summary)
         .ok_or_else(|| Error::Reference(format!("the reference of `{}`: {CUT}", scene.name)))?;
     let records = align_all(records, &model, ends, &approach, (bandwidth, speed))?;
-    let first = records.first().ok_or_else(|| Error::Usage("no measured file is given".into()))?;
+    let first = records.first().ok_or_else(|| Error::Usage("no measured file is specified".into()))?;
     let window = CommonAxis { end: window.end.min(first.time.last().copied().unwrap_or(0.0)), ..window };
     if window.end <= window.start {
         return Err(Error::Scene(miette::miette!(
@@ -151,18 +119,12 @@ pub fn compare(
             first.file.display()
         )));
     }
-    let curves = sampled(first, window);
-    let efficiency = Series::of(
-        records.iter().filter(|record| !record.is_copy).filter_map(|record| record.efficiency).collect(),
-    );
+    let (curves, efficiency) = (sampled(first, window), Efficiency::of(&records));
     // another program need not give the curves that are measured
     let shows = |outcome: &&Outcome| SIGNALS.iter().all(|signal| outcome.history.curve(signal).is_some());
-    let outcomes = std::iter::once(("reference".to_owned(), reference)).chain(
-        reduced
-            .iter()
-            .filter(shows)
-            .map(|outcome| (outcome.summary.model.clone().unwrap_or_default(), outcome)),
-    );
+    let models = reduced.iter().filter(shows);
+    let outcomes = std::iter::once(("reference", reference))
+        .chain(models.map(|outcome| (outcome.summary.model.as_deref().unwrap_or_default(), outcome)));
     let partners = outcomes
         .map(|(partner, outcome)| {
             let filtered = Filtered::new(&outcome.history, bandwidth)?;
@@ -174,19 +136,61 @@ pub fn compare(
                     Some(SampledCurve { quantity, values })
                 })
                 .collect();
-            let own = outcome.summary.value("efficiency");
+            let (validation, area) = efficiency.assessed(&outcome.summary, scatter_of(scatters, partner));
             Ok(Partner {
-                partner,
-                efficiency: own,
-                efficiency_difference: efficiency.as_ref().and_then(|series| Some(own? - series.mean)),
-                validation: None,
-                area: None,
+                partner: partner.to_owned(),
+                efficiency: outcome.summary.value("efficiency"),
+                efficiency_difference: efficiency.difference(&outcome.summary),
+                validation,
+                area,
                 curves: metrics(kind.curves(), (&curves, &filtered), window),
                 filtered,
             })
         })
         .collect::<Result<Vec<_>>>()?;
+    let efficiency = efficiency.series;
     Ok(Measured { rule: RULE, bandwidth, speed, efficiency, partners, window, curves, records })
+}
+
+/// What the records show of the efficiency.
+struct Efficiency {
+    series: Option<Series>,
+    /// Standard uncertainty of the mean: the scatter and the noise of each, both over the root of their number; `None` if nothing
+    /// is known of it.
+    u_d: Option<f64>,
+}
+
+impl Efficiency {
+    fn of(records: &[AlignedRecord]) -> Self {
+        let impacts = || records.iter().filter(|record| !record.is_copy);
+        let series = Series::of(impacts().filter_map(|record| record.efficiency).collect());
+        let u_d = series.as_ref().and_then(|series| {
+            let count = series.count as f64;
+            let bands = impacts().filter_map(|record| record.efficiency_uncertainty);
+            let noise = bands.map(|band| (band / NORMAL_95).powi(2)).sum::<f64>() / count;
+            let scatter = series.standard_deviation.map_or(0.0, |deviation| deviation.powi(2));
+            // the scatter has the noise in it already
+            Some((scatter.max(noise) / count).sqrt()).filter(|u| *u > 0.0)
+        });
+        Efficiency { series, u_d }
+    }
+
+    /// A result's efficiency less the mean.
+    fn difference(&self, summary: &Summary) -> Option<f64> {
+        Some(summary.value("efficiency")? - self.series.as_ref()?.mean)
+    }
+
+    /// What the difference of a result shows, whose inputs let it scatter as `scatter` says, and the area between both distributions.
+    fn assessed(&self, summary: &Summary, scatter: Option<&Scatter>) -> (Option<Assessment>, Option<Area>) {
+        let scatter = scatter.and_then(|scatter| scatter.quantities.get("efficiency"));
+        let Some((error, scatter)) = self.difference(summary).zip(scatter) else { return (None, None) };
+        let assessment = Assessment::of(error, (numerical(summary, "efficiency"), self.u_d), scatter);
+        // the distribution about the result itself
+        let shift = summary.value("efficiency").unwrap_or(f64::NAN) - scatter.nominal.unwrap_or(f64::NAN);
+        let moved: Vec<f64> = scatter.values.iter().map(|value| value + shift).collect();
+        let values = self.series.as_ref().map_or(&[][..], |series| &series.values);
+        (assessment, Area::between(&moved, values).filter(|area| area.area.is_finite()))
+    }
 }
 
 /// The signals of a record at the instants of `window`.

@@ -132,7 +132,7 @@ impl Alignment<'_> {
                 (FindingKind::EndStop, "is stopped or returned")
             };
             let effect = format!(
-                "{quantity}: the body {what} {time:.3e} s after the first touch, where its velocity changes by {change:.3} m/s; {rest}"
+                "{quantity}: the body {what} {time:.3e} s after the first contact, where its velocity changes by {change:.3} m/s; {rest}"
             );
             findings.push(Finding::new(kind, [time + shift, end], effect));
         }
@@ -229,7 +229,7 @@ impl Alignment<'_> {
             let delay = found - own[0].0;
             (explained && delay.abs() > DELAY * period).then(|| {
                 let effect = format!(
-                    "{} is {:.2e} s {} relative to {}; one shift for both fits neither, the time of the first touch is wrong by a part of that",
+                    "{} is {:.2e} s {} relative to {}; one shift for both fits neither, the time of the first contact is wrong by a part of that",
                     seen.correction.quantity,
                     delay.abs(),
                     if delay > 0.0 { "late" } else { "early" },

@@ -133,7 +133,7 @@ fn clipped(time: &[f64], channel: &Channel) -> Option<Finding> {
         }
         let Range { start, end } = at_limit[0]..at_limit[at_limit.len() - 1];
         let effect = format!(
-            "{}: {} samples have its extreme value of {limit:.4e}: the range of the instrument was exceeded, and offset, velocities and time of the first touch from this signal are wrong",
+            "{}: {} samples have its extreme value of {limit:.4e}: the range of the instrument was exceeded, and offset, velocities and time of the first contact from this signal are wrong",
             channel.quantity,
             at_limit.len()
         );

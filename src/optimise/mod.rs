@@ -14,7 +14,7 @@ pub use robust::{Robust, RobustOptimum};
 use crate::error::{Error, Result};
 use crate::format::{rounded, words};
 use crate::kinds::{self, FollowedMesh, Series as Impacts, SeriesModel};
-use crate::report::{ChartPanel, Series, chart};
+use crate::plot::{ChartPanel, Series, chart};
 use crate::result::{CUT, Outcome, SCHEMA_VERSION, Summary};
 use crate::scene::{Field, Model, Scene, Template};
 use rayon::prelude::*;

@@ -12,6 +12,9 @@ use std::process::{Command, Stdio};
 /// Environment variable that names CalculiX's program.
 const CALCULIX_VARIABLE: &str = "IMPACTCHECK_CCX";
 
+/// Name of the check for the independent solver.
+pub const INDEPENDENT_SOLVER: &str = "CalculiX";
+
 /// One thing that is needed, and whether it is there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
@@ -44,17 +47,16 @@ pub fn doctor(store: &Store) -> Vec<Check> {
     });
     checks.push(launcher(chosen));
     checks.push(Check {
-        name: "CalculiX".to_owned(),
+        name: INDEPENDENT_SOLVER.to_owned(),
         found: calculix(),
-        needed_for: "a second program's references (`reference --solver calculix`)".to_owned(),
+        needed_for: "references of an independent solver (`reference --solver calculix`)".to_owned(),
         install: "sudo apt-get install calculix-ccx".to_owned(),
         optional: true,
     });
     checks.push(Check {
         name: "MuJoCo".to_owned(),
         found: mujoco(),
-        needed_for: "new flights to hold the reduced flight against (`python -m fem_reference flights`)"
-            .to_owned(),
+        needed_for: "reference flights of another program (`python -m fem_reference flights`)".to_owned(),
         install: "make setup".to_owned(),
         optional: true,
     });

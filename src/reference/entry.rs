@@ -43,7 +43,7 @@ const PROVENANCE: &str = "provenance.json";
 const MESH: &str = "mesh.vtu";
 const REQUIRED: [&str; 4] = [SUMMARY, HISTORY, MESH, PROVENANCE];
 const NO_SERIES: &str =
-    "has no `convergence` with the `dofs` of its meshes: nothing its bands could follow from";
+    "has no `convergence` with the `dofs` of its meshes: its uncertainties do not follow from anything";
 /// Bands of curves are written with three digits.
 const BAND_ROUNDING: f64 = 0.005;
 /// Bytes of a mesh file within which its number of points stands.

@@ -59,7 +59,7 @@ pub(super) fn read(
         let found: Vec<&str> = header.iter().take(12).collect();
         let expected: Vec<&str> = curves.iter().map(|curve| curve.name).collect();
         format!(
-            "line 1: the columns are {}; expected time, then {}, and perhaps the bands of all curves",
+            "line 1: the columns are {}; expected time, then {}, and optionally the uncertainties of all curves",
             found.join(","),
             expected.join(",")
         )

@@ -23,7 +23,7 @@ mod turn;
 pub use child::Progress;
 pub use curve_bands::CurveBands;
 pub use dents::Dents;
-pub use doctor::{Check, doctor};
+pub use doctor::{Check, INDEPENDENT_SOLVER, doctor};
 pub use entry::Stored;
 pub use fields::FieldMesh;
 pub use identity::{revision, settings_hash};
@@ -46,7 +46,7 @@ pub enum Resolution {
     Paper,
     /// Three halves of the elements in each direction.
     Fine,
-    /// As many as bring the 95 % band of efficiency and force peaks down to an error.
+    /// As many as bring the uncertainty (95 %) of efficiency and peak forces down to an error.
     Within(TargetError),
     /// CalculiX's, on its own series of meshes.
     Calculix(CalculixMesh),

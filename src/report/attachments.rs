@@ -1,14 +1,15 @@
 //! What a report shows besides the comparison, where there is any of it.
 
-use super::{Animation, kinds};
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
 use crate::coverage::Coverage;
+use crate::project::project_root;
 use crate::reference::{CurveBands, Dents, FieldMesh, MeshSection, Stored};
+use crate::report::kinds;
 use crate::result::History;
 use crate::scene::Scene;
 use crate::validated::Validation;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Nothing of this changes a verdict; all of it may be missing.
@@ -26,10 +27,8 @@ pub struct Attachments {
     pub section: Option<MeshSection>,
     /// Its stress at the instant (s) kept that is nearest to the largest force.
     pub section_stress: Option<(f64, MeshSection)>,
-    /// The series of deformed states that ParaView plays.
-    pub animation: Option<PathBuf>,
-    /// The impact moving.
-    pub film: Option<Animation>,
+    /// The reference's series of fields, which ParaView plays.
+    pub fields: Option<PathBuf>,
     /// What the reduced models have cost, in their order; of models that share a mesh with the reference.
     pub cost: Vec<Cost>,
     /// Folder of the scene's file, for people; empty = not known.
@@ -40,7 +39,7 @@ pub struct Attachments {
     pub trends: Vec<Trend>,
     /// Changes of tolerances and reference accepted so far, oldest first.
     pub acceptances: Vec<Acceptance>,
-    /// Scenes in which models were held against references, this one among them.
+    /// Scenes in which models were compared with references, this one among them.
     pub validated: Arc<[Validation]>,
     /// Which features of scenes are held against what.
     pub coverage: Option<Arc<Coverage>>,
@@ -56,15 +55,22 @@ pub struct Cost {
 }
 
 impl Attachments {
-    /// What the store has beside the numbers of a solution of `scene`. Meshes and fields that can't be drawn are left out.
+    /// What the store has beside the numbers of a solution of `scene`. Meshes and fields that can't be drawn are omitted.
     pub fn of(scene: &Scene, stored: &Stored) -> Self {
         let drawn = kinds::of(scene).attachments(stored);
-        Attachments { bands: stored.bands.clone(), ..drawn }
+        // the same on every machine, so that equal results give equal reports
+        let root = project_root().unwrap_or_default();
+        let in_project = |file: PathBuf| file.strip_prefix(&root).map(Path::to_owned).unwrap_or(file);
+        Attachments {
+            bands: stored.bands.clone(),
+            fields: stored.fields_over_time().map(in_project),
+            ..drawn
+        }
     }
 }
 
 /// When the curve called `name` is largest, s.
-pub(super) fn instant_of_peak(history: &History, name: &str) -> f64 {
+pub(crate) fn instant_of_peak(history: &History, name: &str) -> f64 {
     let values = history.time.iter().zip(history.curve(name).unwrap_or_default());
     values.max_by(|a, b| a.1.total_cmp(b.1)).map_or(0.0, |(time, _)| *time)
 }

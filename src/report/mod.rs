@@ -3,103 +3,44 @@
 //! Nothing here computes physics, and nothing depends on the time of day: the same results give
 //! the same files.
 
-mod acceptance_section;
-mod animation_section;
 mod attachments;
-mod budget_figure;
-mod budget_section;
-mod chart;
-mod colour_map;
-pub mod colours;
-mod coverage_page;
-mod curves_chart;
-mod curves_csv;
-mod dents_section;
-mod discrepancy_picture;
-mod discrepancy_section;
-mod efficiency_boxes;
-mod facts;
-mod field_raster;
+mod ci;
+mod conclusion;
+mod export;
 mod figure;
-mod figure_file;
-mod figure_geometry;
-mod figure_lines;
-mod figure_panel;
-mod figure_residuals;
-mod first_screen;
-mod flight_section;
-pub mod github;
-mod history_file;
-mod html;
-mod impacts_section;
-mod index_page;
-mod interactive;
-mod json;
-mod junit;
 mod kinds;
-mod label_placement;
-mod landing_map;
-mod limits_section;
-mod markdown;
-mod measured_section;
-mod mesh_section;
-mod model_page;
-mod moves_page;
 mod overview;
-mod page_data;
-mod pdf;
-mod pdf_text;
-mod plot_axis;
-mod png;
-mod polyline;
-mod prose;
-mod reference_check_section;
+mod page;
 mod run_times;
-mod scatter_figure;
-mod scene_drawing;
-mod scene_page;
-mod section;
-mod section_frame;
 mod standing;
 mod summary_column;
-mod sweep_figure;
-mod symmetric_log;
 mod terminal;
-mod thumbnail;
-mod ticks;
-mod trend_section;
 mod trust;
-mod validated_map;
-mod validation_section;
-mod vibration_chart;
 mod write;
 
-pub use animation_section::fields_command;
 pub use attachments::{Attachments, Cost};
-pub use chart::{ChartPanel, Series, chart};
-pub use colour_map::{ColourMap, colour_maps};
-pub use curves_chart::curves_chart;
-pub use curves_csv::curves_csv;
-pub use figure::{FIGURE_WIDTHS, Theme, figure, measured_figure, printed_figure};
-pub use figure_file::{FigureFile, FigureFormat, figure_file};
-pub use history_file::history_file;
-pub use index_page::index_page;
-pub use json::json;
-pub use junit::junit;
-pub(crate) use junit::{integrity_failure as check_failure, told as row_told};
-pub use kinds::{Animation, Arrow, film, seat_picture};
-pub use markdown::markdown;
-pub use measured_section::efficiency_figure;
-pub use model_page::model_page;
-pub use moves_page::moves_page;
-pub use png::png;
-pub use scatter_figure::scatter_figure;
-pub use scene_page::scene_page;
-pub use sweep_figure::{Drawn, sweep_figure};
-pub use terminal::{alone, terminal};
+pub use ci::github;
+pub use ci::junit::junit;
+pub(crate) use ci::junit::{integrity_failure as check_failure, told as row_told};
+pub use ci::markdown::markdown;
+pub use export::csv::curves_csv;
+pub use export::figure::{FigureFormat, figure_file};
+pub use export::history::history_file;
+pub use export::json::json;
+pub use figure::curves::curves_chart;
+pub use figure::scatter::scatter_figure;
+pub use figure::scene::{FIGURE_WIDTHS, Theme, figure, measured_figure, printed_figure};
+pub use figure::sweep::{Drawn, sweep_figure};
+pub use kinds::{Arrow, seat_picture};
+pub use page::index::index_page;
+pub use page::model::model_page;
+pub use page::moves::moves_page;
+pub use page::scene::scene_page;
+pub use page::section::measured::efficiency_figure;
+pub use terminal::{Width, alone, terminal};
 pub use write::{check_writable, write};
 
-use crate::comparison::{ChangedTolerance, Comparison, GateRules, SceneComparison};
+use crate::comparison::{Comparison, GateRules, SceneComparison};
 use crate::coverage::Coverage;
 use crate::result::Outcome;
 use crate::scene::Scene;
@@ -139,7 +80,7 @@ impl Report<'_> {
         Comparison::new(self.scenes.iter().map(|s| s.comparison.clone()).collect())
     }
 
-    /// Scenes in which models were held against references, the same for all scenes of the report.
+    /// Scenes in which models were compared with references, the same for all scenes of the report.
     pub(crate) fn validated(&self) -> &[Validation] {
         self.scenes.first().map_or(&[], |scene| &scene.attachments.validated)
     }
@@ -147,16 +88,5 @@ impl Report<'_> {
     /// Which features of scenes are held against what, if that is known.
     fn coverage(&self) -> Option<&Coverage> {
         self.scenes.first().and_then(|scene| scene.attachments.coverage.as_deref())
-    }
-
-    /// A sentence per tolerance that was changed since it was accepted.
-    pub fn changed_tolerances(&self) -> impl Iterator<Item = String> {
-        let sentences = |scene: &SceneReport| {
-            let comparison = &scene.comparison;
-            let sentence =
-                |changed: &ChangedTolerance| format!("{}: {}", comparison.scene, changed.sentence());
-            comparison.changed_tolerances.iter().map(sentence).collect::<Vec<_>>()
-        };
-        self.scenes.iter().flat_map(sentences)
     }
 }

@@ -1,64 +1,64 @@
 //! What tables of several scenes show of each: data of its own, so that it can outlive the run that made it.
 
-use super::SceneReport;
-use super::thumbnail::thumbnail;
 use crate::comparison::{Discrepancy, ModelComparison, Verdict};
 use crate::format::model_name;
+use crate::report::SceneReport;
+use crate::report::figure::thumbnail::thumbnail;
 use crate::result::Outcome;
 use serde::{Deserialize, Serialize};
 
 /// A scene in short.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Overview {
-    pub(super) scene: String,
-    pub(super) description: String,
+pub(crate) struct Overview {
+    pub(crate) scene: String,
+    pub(crate) description: String,
     /// Folder of its file, as far as it is known.
     #[serde(default)]
-    pub(super) folder: String,
-    pub(super) verdict: Verdict,
+    pub(crate) folder: String,
+    pub(crate) verdict: Verdict,
     /// When it was compared (UTC), and the command line that compares it again.
-    pub(super) compared: Option<String>,
-    pub(super) command: String,
-    pub(super) models: Vec<ModelOverview>,
+    pub(crate) compared: Option<String>,
+    pub(crate) command: String,
+    pub(crate) models: Vec<ModelOverview>,
     /// Numbers that drift, and numbers recorded over commits.
-    pub(super) drift: [usize; 2],
+    pub(crate) drift: [usize; 2],
 }
 
 /// A model of a scene in short.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct ModelOverview {
-    pub(super) model: String,
+pub(crate) struct ModelOverview {
+    pub(crate) model: String,
     /// With its number of modes.
-    pub(super) name: String,
-    pub(super) verdict: Verdict,
-    pub(super) verdict_in_words: String,
+    pub(crate) name: String,
+    pub(crate) verdict: Verdict,
+    pub(crate) verdict_in_words: String,
     /// Efficiency of the model and of the reference.
-    pub(super) efficiency: [Option<f64>; 2],
+    pub(crate) efficiency: [Option<f64>; 2],
     /// See [`crate::comparison::AMONG`].
-    pub(super) largest: Option<RowOverview>,
+    pub(crate) largest: Option<RowOverview>,
     /// The gated row nearest to its bound.
-    pub(super) tightest: Option<RowOverview>,
+    pub(crate) tightest: Option<RowOverview>,
     /// Paths of a curve of the reference and of the model.
     #[serde(default)]
-    pub(super) thumbnail: [String; 2],
+    pub(crate) thumbnail: [String; 2],
     /// Verdicts of the gated rows.
-    pub(super) gated: Vec<Verdict>,
+    pub(crate) gated: Vec<Verdict>,
 }
 
 /// A row in short.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct RowOverview {
-    pub(super) quantity: String,
-    pub(super) unit: String,
-    pub(super) reference: Option<f64>,
-    pub(super) relative: Option<f64>,
-    pub(super) uncertainty: Option<f64>,
+pub(crate) struct RowOverview {
+    pub(crate) quantity: String,
+    pub(crate) unit: String,
+    pub(crate) reference: Option<f64>,
+    pub(crate) relative: Option<f64>,
+    pub(crate) uncertainty: Option<f64>,
     /// Share of the tolerance.
-    pub(super) used: Option<f64>,
+    pub(crate) used: Option<f64>,
 }
 
 impl Overview {
-    pub(super) fn of(report: &SceneReport) -> Self {
+    pub(crate) fn of(report: &SceneReport) -> Self {
         let (comparison, trends) = (&report.comparison, &report.attachments.trends);
         let models = comparison.models.iter().zip(report.reduced);
         Overview {

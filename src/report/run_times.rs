@@ -9,12 +9,12 @@ const MARK: [&str; 2] = ["<span class=\"run-time\">", "</span>"];
 const KEYS: [&str; 2] = ["\"solve_seconds\":", "\"compared\":"];
 
 /// A run time on a page.
-pub(super) fn marked(time: &str) -> Markup {
+pub(crate) fn marked(time: &str) -> Markup {
     html! { span class="run-time" { (time) } }
 }
 
 /// Whether two versions of a file say the same, run times aside.
-pub(super) fn same_but_for_run_times(one: &[u8], other: &[u8]) -> bool {
+pub(crate) fn same_but_for_run_times(one: &[u8], other: &[u8]) -> bool {
     one == other
         || match (std::str::from_utf8(one), std::str::from_utf8(other)) {
             (Ok(one), Ok(other)) => without(one) == without(other),

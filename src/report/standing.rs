@@ -1,40 +1,40 @@
 //! The scenes whose results stand in a folder: those of this run, and those of earlier runs whose pages are there.
 
-use super::overview::Overview;
-use super::{Report, SceneReport};
 use crate::comparison::Verdict;
 use crate::error::{Error, Result};
+use crate::report::overview::Overview;
+use crate::report::{Report, SceneReport};
 use crate::result::SCHEMA_VERSION;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::Path;
 
 /// The document of all scenes of a folder.
-pub(super) const DOCUMENT: &str = "comparison.json";
+pub(crate) const DOCUMENT: &str = "comparison.json";
 /// Where an entry of the document keeps the scene in short.
 const OVERVIEW: &str = "overview";
 
 /// A scene whose results stand in a folder.
-pub(super) struct Standing {
-    pub(super) overview: Overview,
+pub(crate) struct Standing {
+    pub(crate) overview: Overview,
     /// Its entry of the document, if it was not part of this run.
     kept: Option<Value>,
 }
 
 impl Standing {
     /// Whether it was not part of this run.
-    pub(super) fn is_kept(&self) -> bool {
+    pub(crate) fn is_kept(&self) -> bool {
         self.kept.is_some()
     }
 
     /// When it was compared, for a column of that name, and whether in another run than this.
-    pub(super) fn date(&self) -> String {
+    pub(crate) fn date(&self) -> String {
         let compared = self.compared();
         if self.is_kept() { format!("{compared}, kept from an earlier run") } else { compared.to_owned() }
     }
 
     /// The same of one that is kept, as a sentence.
-    pub(super) fn kept(&self) -> String {
+    pub(crate) fn kept(&self) -> String {
         format!("Kept from an earlier run, not compared again: compared {}.", self.compared())
     }
 
@@ -52,13 +52,13 @@ struct ReportDocument {
 }
 
 /// The scenes of `report`.
-pub(super) fn of_run(report: &Report) -> Vec<Standing> {
+pub(crate) fn of_run(report: &Report) -> Vec<Standing> {
     report.scenes.iter().map(|scene| Standing { overview: Overview::of(scene), kept: None }).collect()
 }
 
 /// The scenes of `report` in the places that they had in the document in `dir`, the others there whose pages are there, and
 /// what is new. A document that can't be read keeps nothing.
-pub(super) fn in_folder(report: &Report, dir: &Path) -> Vec<Standing> {
+pub(crate) fn in_folder(report: &Report, dir: &Path) -> Vec<Standing> {
     let mut run = of_run(report);
     let mut standing = Vec::new();
     for entry in entries(dir) {
@@ -82,7 +82,7 @@ fn entries(dir: &Path) -> Vec<Value> {
 }
 
 /// The worst of the scenes' verdicts.
-pub(super) fn verdict(standing: &[Standing]) -> Verdict {
+pub(crate) fn verdict(standing: &[Standing]) -> Verdict {
     Verdict::worst(standing.iter().map(|scene| scene.overview.verdict))
 }
 
@@ -90,7 +90,7 @@ pub(super) fn verdict(standing: &[Standing]) -> Verdict {
 ///
 /// # Errors
 /// [`Error::Internal`] if it can't be serialised.
-pub(super) fn document(report: &Report, standing: &[Standing]) -> Result<String> {
+pub(crate) fn document(report: &Report, standing: &[Standing]) -> Result<String> {
     let internal = |e: serde_json::Error| Error::Internal(format!("writing the comparison as JSON: {e}"));
     let entry = |scene: &Standing| {
         let is_same = |of_run: &&SceneReport| of_run.comparison.scene == scene.overview.scene;

@@ -1,10 +1,13 @@
 //! A short table for the terminal.
 
-use super::Report;
-use super::summary_column::SummaryColumn;
-use super::{kinds, measured_section};
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
-use crate::result::{Outcome, Summary};
+use crate::format::significant;
+use crate::report::Report;
+use crate::report::conclusion::{HOLD, assumptions, conclusion, summaries};
+use crate::report::kinds;
+use crate::report::page::section::measured;
+use crate::report::summary_column::SummaryColumn;
+use crate::result::{Limit, Outcome, Summary};
 use crate::scene::Scene;
 use anstyle::{AnsiColor, Style};
 
@@ -14,7 +17,7 @@ const GREEN: Style = AnsiColor::Green.on_default().bold();
 const RED: Style = AnsiColor::Red.on_default().bold();
 
 /// A verdict in its colour, in these words.
-pub(super) fn coloured(verdict: Verdict, words: &str) -> String {
+pub(crate) fn coloured(verdict: Verdict, words: &str) -> String {
     let style = match verdict {
         Verdict::Pass => GREEN,
         Verdict::Fail => RED,
@@ -23,103 +26,208 @@ pub(super) fn coloured(verdict: Verdict, words: &str) -> String {
     format!("{style}{words}{style:#}")
 }
 
-/// A scene's line.
-pub(super) fn headline(comparison: &SceneComparison) -> String {
-    let verdict = comparison.verdict;
-    format!("{}: {}\n", comparison.scene, coloured(verdict, verdict.words()))
+/// A scene's line: the verdict on its tolerances, and whether the assumptions hold.
+pub(crate) fn headline(comparison: &SceneComparison) -> String {
+    let verdict = coloured(comparison.verdict, comparison.verdict.words());
+    let assumptions = assumptions(comparison).map_or(String::new(), |words| {
+        let style = if words == HOLD { Style::new() } else { YELLOW };
+        format!(", {style}{words}{style:#}")
+    });
+    format!("{}: {verdict}{assumptions}\n", comparison.scene)
 }
 
 /// A model's verdict.
-pub(super) fn of_model(model: &ModelComparison) -> String {
+pub(crate) fn of_model(model: &ModelComparison) -> String {
     coloured(model.verdict, model.verdict_in_words())
 }
 
-/// One per line: warnings, what failed and what is undecided; then how many did.
-pub(super) fn findings(comparison: &SceneComparison) -> String {
+/// Warnings, what failed and what is undecided; then how many did.
+pub(crate) fn findings(comparison: &SceneComparison) -> String {
     let mut text = String::new();
-    let mut line = |of: &str, what: String| text += &format!("  {of}: {what}\n");
+    let mut line = |of: &str, what: String| text += &wrapped(&format!("{of}: {what}"));
     let warning = format!("{YELLOW}warning{YELLOW:#}");
-    for of_reference in &comparison.reference.warnings {
-        line(&format!("{warning}: reference"), of_reference.clone());
+    for shared in shared_warnings(comparison) {
+        line(&warning, shared);
     }
     for check in comparison.integrity.iter().filter(|c| c.verdict.failed()) {
-        line("reference", super::junit::integrity_failure(check));
+        line("reference", crate::report::ci::junit::integrity_failure(check));
     }
-    for (record, effect) in comparison.measured.iter().flat_map(measured_section::effects) {
+    for (record, effect) in comparison.measured.iter().flat_map(measured::effects) {
         line(&format!("{warning}: {record}"), effect.to_owned());
     }
     for model in &comparison.models {
-        for of_model in &model.summary.warnings {
-            line(&format!("{warning}: {}", model.model), of_model.clone());
-        }
         for row in model.discrepancies.iter().filter(|d| d.is_told()) {
-            line(&model.model, super::junit::told(row));
+            line(&model.model, crate::report::ci::junit::told(row));
         }
         for check in model.integrity.iter().filter(|c| c.verdict.failed()) {
-            line(&model.model, super::junit::integrity_failure(check));
+            line(&model.model, crate::report::ci::junit::integrity_failure(check));
         }
     }
     let gated = comparison.gated_verdicts().count();
-    for (verdict, did) in [(Verdict::Fail, "failed"), (Verdict::Undecided, "are undecided")] {
+    for (verdict, what) in [(Verdict::Fail, "outside its tolerance"), (Verdict::Undecided, "undecided")] {
         let count = comparison.gated_verdicts().filter(|v| *v == verdict).count();
         if count > 0 {
-            text += &format!("  {count} of {gated} gated quantities {did}\n");
+            text += &format!("  {what}: {count} of {gated} quantities with a tolerance\n");
         }
     }
     text
 }
 
-/// Per scene a line for the reference and one per model: values, how far they are from the
-/// reference, verdict; then, one per line, what failed.
-pub fn terminal(report: &Report) -> String {
+/// How wide a table may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Width {
+    /// 80 columns: of the models, how far they are from the reference.
+    Narrow,
+    /// As wide as it gets: of the models, the values also.
+    Wide,
+}
+
+/// Per scene: verdict, conclusion, a table of reference and models, and what is to be known about them.
+pub fn terminal(report: &Report, width: Width) -> String {
     let mut text = String::new();
     for scene in &report.scenes {
         let comparison = &scene.comparison;
-        let (reference, columns) = (&comparison.reference, kinds::of(scene.scene).columns());
+        let columns = kinds::of(scene.scene).columns();
         text += &headline(comparison);
-        text += &format!("{}  verdict\n", headings(columns));
-        text += &format!("  {:<10}{}\n", "reference", cells(columns, reference, None));
-        for model in &comparison.models {
-            let row = cells(columns, &model.summary, Some(reference));
-            text += &format!("  {:<10}{row}  {}\n", model.model, of_model(model));
-        }
-        if let Some(check) = &comparison.reference_check {
-            let row = cells(columns, &check.summary, Some(reference));
-            text += &format!("  {:<10}{row}  {}\n", check.program, check.words());
-        }
+        text += &wrapped(&conclusion(columns, comparison));
+        text += &rows(columns, comparison, width).text();
         if let Some(measured) = &comparison.measured {
-            text += &format!("  {}\n", measured_section::sentence(measured));
+            text += &wrapped(&measured::sentence(measured));
         }
         text += &findings(comparison);
-        text += &super::validation_section::validation_text(comparison);
+        text += &crate::report::page::section::validation::validation_text(comparison);
         text.push('\n');
     }
     text
 }
 
-/// The same table of reduced models alone; nothing if there are none.
+/// The rows of a comparison.
+fn rows(columns: &[SummaryColumn], comparison: &SceneComparison, width: Width) -> TextTable {
+    let reference = &comparison.reference;
+    let mut table = TextTable::headed(columns);
+    table.row("reference", cells(columns, reference, None, width), String::new());
+    let bands = columns.iter().map(|column| reference.band(column.quantity));
+    if bands.clone().any(|band| band.is_some()) {
+        let cell = |(column, band): (&SummaryColumn, Option<f64>)| {
+            band.map_or("–".to_owned(), |band| format!("±{}", column.uncertainty(reference, band)))
+        };
+        table.row("  (95 %)", columns.iter().zip(bands).map(cell).collect(), String::new());
+    }
+    for model in &comparison.models {
+        table.row(&model.model, cells(columns, &model.summary, Some(reference), width), of_model(model));
+    }
+    if let Some(check) = &comparison.reference_check {
+        let words = check.words().to_owned();
+        table.row(&check.program, cells(columns, &check.summary, Some(reference), width), words);
+    }
+    table
+}
+
+/// The table of reduced models that have no reference; nothing if there are none.
 pub fn alone(scene: &Scene, outcomes: &[Outcome]) -> String {
     if outcomes.is_empty() {
         return String::new();
     }
     let columns = kinds::of(scene).columns();
-    let mut text = format!("{}: reduced models alone\n{}\n", scene.name, headings(columns));
+    let mut table = TextTable::headed(columns);
     for Outcome { summary, .. } in outcomes {
         let model = summary.model.as_deref().unwrap_or_default();
-        text += &format!("  {model:<10}{}\n", cells(columns, summary, None));
+        table.row(model, cells(columns, summary, None, Width::Narrow), String::new());
     }
-    text
+    format!("{}: reduced models without a reference\n{}", scene.name, table.text())
 }
 
-fn headings(columns: &[SummaryColumn]) -> String {
-    let headings: String = columns.iter().map(|column| format!("{:>22}", column.heading)).collect();
-    format!("  {:<10}{headings}", "")
-}
-
-fn cells(columns: &[SummaryColumn], summary: &Summary, reference: Option<&Summary>) -> String {
+/// What `summary` gives in the columns; next to `reference` how far it is from it.
+fn cells(
+    columns: &[SummaryColumn],
+    summary: &Summary,
+    reference: Option<&Summary>,
+    width: Width,
+) -> Vec<String> {
     let cell = |column: &SummaryColumn| {
-        let Some(cell) = column.cell(summary, reference) else { return String::new() };
-        cell.value + &cell.off_in_words.map_or(String::new(), |off| format!(" ({off})"))
+        let Some(cell) = column.cell(summary, reference) else { return "–".to_owned() };
+        match (cell.off_in_words, width) {
+            (Some(off), Width::Narrow) => off,
+            (Some(off), Width::Wide) => format!("{} ({off})", cell.value),
+            (None, _) => cell.value,
+        }
     };
-    columns.iter().map(|column| format!("{:>22}", cell(column))).collect()
+    columns.iter().map(cell).collect()
+}
+
+/// A table in which every column is as wide as its widest cell.
+struct TextTable {
+    /// Name, cells, remark.
+    rows: Vec<(String, Vec<String>, String)>,
+}
+
+impl TextTable {
+    /// With headings in two lines.
+    fn headed(columns: &[SummaryColumn]) -> Self {
+        let mut before = "";
+        let heading = |column: &SummaryColumn| {
+            let same = std::mem::replace(&mut before, column.heading) == column.heading;
+            if same { String::new() } else { column.heading.to_owned() }
+        };
+        let headings = columns.iter().map(heading).collect();
+        let places = columns.iter().map(|column| column.place.to_owned()).collect();
+        Self { rows: vec![(String::new(), headings, String::new()), (String::new(), places, String::new())] }
+    }
+
+    fn row(&mut self, name: &str, cells: Vec<String>, remark: String) {
+        self.rows.push((name.to_owned(), cells, remark));
+    }
+
+    fn text(&self) -> String {
+        let length = |text: &str| text.chars().count();
+        let names = self.rows.iter().map(|(name, ..)| length(name)).max().unwrap_or(0);
+        let columns = self.rows.first().map_or(0, |(_, cells, _)| cells.len());
+        let width = |k: usize| self.rows.iter().map(|(_, cells, _)| length(&cells[k])).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        let mut text = String::new();
+        for (name, cells, remark) in &self.rows {
+            let cells: String =
+                cells.iter().zip(&widths).map(|(cell, width)| format!("  {cell:>width$}")).collect();
+            text += format!("  {name:<names$}{cells}  {remark}").trim_end();
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// A paragraph, indented, in lines of at most 80 columns.
+fn wrapped(text: &str) -> String {
+    if text.is_empty() {
+        return String::new();
+    }
+    let options = textwrap::Options::new(80).initial_indent("  ").subsequent_indent("    ");
+    textwrap::fill(text, options) + "\n"
+}
+
+/// The warnings of reference and models: a limit that several exceed is one warning with their values, then those of one result each.
+fn shared_warnings(comparison: &SceneComparison) -> Vec<String> {
+    let mut limits: Vec<(&Limit, Vec<(&str, f64)>)> = Vec::new();
+    let mut own = Vec::new();
+    for (name, summary) in summaries(comparison) {
+        let sentences: Vec<String> = summary.limits.iter().filter_map(Limit::warning).collect();
+        for limit in summary.limits.iter().filter(|limit| limit.is_exceeded()) {
+            match limits.iter_mut().find(|(first, _)| first.measure == limit.measure) {
+                Some((_, values)) => values.push((name, limit.value)),
+                None => limits.push((limit, vec![(name, limit.value)])),
+            }
+        }
+        let others = summary.warnings.iter().filter(|warning| !sentences.contains(warning));
+        own.extend(others.map(|warning| format!("{name}: {warning}")));
+    }
+    let of_all = limits.into_iter().filter_map(|(limit, values)| {
+        let [first, others @ ..] = &values[..] else { return None };
+        let others = others.iter().map(|(name, value)| format!("{name} {}", significant(*value, 2)));
+        let others: Vec<String> = others.collect();
+        let sentence = limit.warning()?;
+        Some(match others.is_empty() {
+            true => format!("{}: {sentence}", first.0),
+            false => format!("{sentence} ({}; {})", first.0, others.join(", ")),
+        })
+    });
+    of_all.chain(own).collect()
 }

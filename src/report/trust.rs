@@ -1,20 +1,20 @@
 //! How far a model can be trusted in its scene, in a sentence: what it hits, how well, and whether its theory holds there.
 
-use super::summary_column::SummaryColumn;
 use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
 use crate::format::{percent_above, significant, words};
 use crate::kinds;
+use crate::report::summary_column::SummaryColumn;
 use crate::result::Summary;
 use crate::scene::Scene;
 use crate::validated::{MEASURES, Place, Validation, Vicinity};
 
 /// Discrepancy, relative or in rad, up to which a model is said to be right within it rather than off by it.
-pub(super) const SMALL: f64 = 0.01;
+pub(crate) const SMALL: f64 = 0.01;
 /// Discrepancy from which on it counts as large.
-pub(super) const LARGE: f64 = 0.05;
+pub(crate) const LARGE: f64 = 0.05;
 
 /// The class of a discrepancy of this size.
-pub(super) fn size_class(off: f64) -> &'static str {
+pub(crate) fn size_class(off: f64) -> &'static str {
     match off.abs() {
         size if size <= SMALL => "small",
         size if size <= LARGE => "medium",
@@ -23,8 +23,8 @@ pub(super) fn size_class(off: f64) -> &'static str {
 }
 
 /// What the model hits, and how well: the quantities of `columns`, the curves, the numbers of contacts.
-pub(super) fn accuracy(columns: &[SummaryColumn], model: &ModelComparison) -> String {
-    let groups = columns.chunk_by(|one, other| one.group == other.group);
+pub(crate) fn accuracy(columns: &[SummaryColumn], model: &ModelComparison) -> String {
+    let groups = columns.chunk_by(|one, other| one.heading == other.heading);
     let mut phrases: Vec<String> = groups.filter_map(|group| of_group(group, model)).collect();
     phrases.extend(worst_curve(model));
     let counted =
@@ -36,7 +36,7 @@ pub(super) fn accuracy(columns: &[SummaryColumn], model: &ModelComparison) -> St
     }
     let truncation = model.summary.truncation_error.filter(|error| *error > SMALL);
     let truncation =
-        truncation.map(|error| format!("the modes left out make an estimated {}", percent_above(error)));
+        truncation.map(|error| format!("the truncated modes make an estimated {}", percent_above(error)));
     std::iter::once(phrases.join(", ")).chain(truncation).collect::<Vec<_>>().join("; ")
 }
 
@@ -51,10 +51,10 @@ fn of_group(group: &[SummaryColumn], model: &ModelComparison) -> Option<String> 
     };
     let sizes: Option<Vec<f64>> = rows.iter().map(|(c, row)| size(c.is_angle, row, row.difference)).collect();
     let Some(worst) = sizes.map(|sizes| sizes.into_iter().fold(0.0, f64::max)) else {
-        return Some(format!("{} not determined", first.group));
+        return Some(format!("{} not determined", first.heading));
     };
     let band = rows.iter().filter_map(|(c, row)| size(c.is_angle, row, row.uncertainty)).fold(0.0, f64::max);
-    Some(phrase(first.group, rows.len() > 1, worst, band, first.is_angle))
+    Some(phrase(first.heading, rows.len() > 1, worst, band, first.is_angle))
 }
 
 fn phrase(what: &str, several: bool, worst: f64, band: f64, is_angle: bool) -> String {
@@ -67,10 +67,10 @@ fn phrase(what: &str, several: bool, worst: f64, band: f64, is_angle: bool) -> S
     };
     let how = match (worst <= SMALL, several) {
         (true, _) => "within",
-        (false, true) => "off by up to",
-        (false, false) => "off by",
+        (false, true) => "differs by up to",
+        (false, false) => "differs by",
     };
-    let band = if band > worst { format!(" (band ±{})", told(band)) } else { String::new() };
+    let band = if band > worst { format!(" (reference ±{})", told(band)) } else { String::new() };
     format!("{what} {how} {}{band}", told(worst))
 }
 
@@ -86,7 +86,7 @@ fn worst_curve(model: &ModelComparison) -> Option<String> {
 }
 
 /// Whether the theories hold that the model shares with the reference, as far as that was computed.
-pub(super) fn validity(scene: &Scene, summary: &Summary) -> Vec<String> {
+pub(crate) fn validity(scene: &Scene, summary: &Summary) -> Vec<String> {
     let limits = &summary.limits;
     if limits.is_empty() {
         return Vec::new();
@@ -94,20 +94,20 @@ pub(super) fn validity(scene: &Scene, summary: &Summary) -> Vec<String> {
     let exceeded: Vec<String> = limits
         .iter()
         .filter(|limit| limit.is_exceeded())
-        .map(|limit| format!("{} is {:.1} times its bound", words(&limit.measure), limit.value / limit.bound))
+        .map(|limit| format!("{} is {:.1} times its limit", words(&limit.measure), limit.value / limit.bound))
         .collect();
     let range = match exceeded.is_empty() {
-        true => "inside the range of validity".to_owned(),
-        false => format!("outside the range of validity: {}", exceeded.join(", ")),
+        true => "assumptions hold".to_owned(),
+        false => format!("assumptions violated: {}", exceeded.join(", ")),
     };
     let yielding = kinds::of(scene).yields(scene) || limits.iter().any(|limit| limit.is_of_yield());
-    let unchecked = "elastic limit not checked: no yield strength given".to_owned();
+    let unchecked = "elastic limit not checked: no yield strength is specified".to_owned();
     std::iter::once(range).chain((!yielding).then_some(unchecked)).collect()
 }
 
 /// Where `model` was held against references in other scenes, seen from the scene that `reference` lies in: whether that was
 /// near by, and how far off the model was there.
-pub(super) fn validated(
+pub(crate) fn validated(
     scene: &Scene,
     comparison: &SceneComparison,
     model: &str,
@@ -121,28 +121,28 @@ pub(super) fn validated(
         rows.fold(0.0, f64::max)
     };
     let nearest = format!(
-        "nearest {}, off by {} there",
+        "nearest {}, where it differs by {}",
         vicinity.nearest.scene,
         percent_above(worst(&[vicinity.nearest]))
     );
     let beyond = vicinity.beyond.iter().map(|(measure, own, end)| {
         let side = if own > end { "up to" } else { "down to" };
-        format!("{} {}, validated {side} {}", MEASURES[*measure], significant(*own, 3), significant(*end, 3))
+        format!("{} {}, compared {side} {}", MEASURES[*measure], significant(*own, 3), significant(*end, 3))
     });
     if !vicinity.beyond.is_empty() {
         return Some(format!(
-            "outside the validated range: {}; {nearest}",
+            "no similar scene was compared ({}); {nearest}",
             beyond.collect::<Vec<_>>().join(", ")
         ));
     }
     let where_ = match vicinity.near.len() {
-        0 => return Some(format!("no validated scene near by: {nearest}")),
-        1 => format!("in {}, a validated scene near by", vicinity.near[0].scene),
-        several => format!("in {several} validated scenes near by"),
+        0 => return Some(format!("no similar scene was compared; {nearest}")),
+        1 => format!("in {}, a similar scene", vicinity.near[0].scene),
+        several => format!("in {several} similar scenes"),
     };
     Some(match worst(&vicinity.near) {
-        off if off <= SMALL => format!("inside the validated range: within {} {where_}", percent_above(off)),
-        off => format!("off by up to {} {where_}", percent_above(off)),
+        off if off <= SMALL => format!("agrees within {} {where_}", percent_above(off)),
+        off => format!("differs by up to {} {where_}", percent_above(off)),
     })
 }
 
@@ -153,9 +153,9 @@ mod tests {
     #[test]
     fn sizes_are_rounded_up_and_told_with_the_band_of_the_reference_where_that_is_wider() {
         assert_eq!(phrase("efficiency", false, 0.000_186, 0.000_1, false), "efficiency within 0.019 %");
-        assert_eq!(phrase("force peaks", true, 0.0101, 0.0, false), "force peaks off by up to 1.1 %");
-        assert_eq!(phrase("speed", false, 0.0009, 0.021, false), "speed within 0.090 % (band ±2.1 %)");
-        assert_eq!(phrase("direction", false, 0.2, 0.0, true), "direction off by 11.46°");
+        assert_eq!(phrase("peak force", true, 0.0101, 0.0, false), "peak force differs by up to 1.1 %");
+        assert_eq!(phrase("speed", false, 0.0009, 0.021, false), "speed within 0.090 % (reference ±2.1 %)");
+        assert_eq!(phrase("direction", false, 0.2, 0.0, true), "direction differs by 11.46°");
     }
 
     #[test]

@@ -1,11 +1,14 @@
 //! The report's files, complete or not at all.
 
-use super::run_times::same_but_for_run_times;
-use super::standing::{self, DOCUMENT, Standing};
-use super::validated_map::{self, ValidatedMap};
-use super::{Report, animation_section, coverage_page, kinds};
 use crate::error::{Error, Result};
 use crate::interrupt::Scratch;
+use crate::report::page::coverage;
+use crate::report::page::validated_map;
+use crate::report::page::validated_map::ValidatedMap;
+use crate::report::run_times::same_but_for_run_times;
+use crate::report::standing;
+use crate::report::standing::{DOCUMENT, Standing};
+use crate::report::{Report, kinds};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
@@ -88,35 +91,32 @@ pub fn check_writable(dir: &Path) -> Result<()> {
 fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)>> {
     let mut names = BTreeSet::new();
     let mut files = vec![
-        ("index.html".to_owned(), super::index_page::index_of(report, standing).into_bytes()),
+        ("index.html".to_owned(), crate::report::page::index::index_of(report, standing).into_bytes()),
         (DOCUMENT.to_owned(), standing::document(report, standing)?.into_bytes()),
-        ("comparison.md".to_owned(), super::markdown::of(report, standing).into_bytes()),
-        ("junit.xml".to_owned(), super::junit(report)?.into_bytes()),
+        ("comparison.md".to_owned(), crate::report::ci::markdown::of(report, standing).into_bytes()),
+        ("junit.xml".to_owned(), crate::report::junit(report)?.into_bytes()),
     ];
     if let Some(map) = ValidatedMap::of(report.validated(), None) {
         files.push((validated_map::FILE.to_owned(), map.svg().into_bytes()));
     }
     if let Some(coverage) = report.coverage() {
-        files.push((coverage_page::FILE.to_owned(), coverage_page::of(coverage, standing).into_bytes()));
+        files.push((coverage::FILE.to_owned(), coverage::of(coverage, standing).into_bytes()));
     }
     for scene in &report.scenes {
         let name = &scene.comparison.scene;
         if !is_file_name(name) {
             return Err(Error::Usage(format!("scene name `{name}` can't be used as a file name")));
         }
-        if !names.insert(name) || ["index", coverage_page::NAME].contains(&&**name) {
-            return Err(Error::Usage(format!("scene name `{name}` stands for two pages of the report")));
+        if !names.insert(name) || ["index", coverage::NAME].contains(&&**name) {
+            return Err(Error::Usage(format!("scene name `{name}` occurs twice in the report")));
         }
         for drawing in kinds::of(scene.scene).drawings(scene) {
             let stem = format!("{name}{}", drawing.ending);
-            files.push((format!("{stem}.png"), super::png(&drawing.svg, PNG_SCALE)?));
+            files.push((format!("{stem}.png"), crate::plot::png(&drawing.svg, PNG_SCALE)?));
             files.push((format!("{stem}.svg"), drawing.svg.into_bytes()));
         }
-        if let Some(film) = &scene.attachments.film {
-            files.push((animation_section::file(name), film.gif.clone()));
-        }
-        files.push((format!("{name}.csv"), super::curves_csv(scene)?.into_bytes()));
-        files.push((format!("{name}.html"), super::scene_page(scene).into_bytes()));
+        files.push((format!("{name}.csv"), crate::report::curves_csv(scene)?.into_bytes()));
+        files.push((format!("{name}.html"), crate::report::scene_page(scene).into_bytes()));
     }
     Ok(files)
 }

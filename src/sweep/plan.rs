@@ -122,7 +122,7 @@ impl Plan {
         }
         let tolerance = file.tolerance.unwrap_or(DEFAULT_TOLERANCE);
         if !(1e-12..=1e-2).contains(&tolerance) {
-            return Err(fault(format!("tolerance is {tolerance}, but it has to be within 1e-12 to 1e-2")));
+            return Err(fault(format!("tolerance is {tolerance}, but it must be within 1e-12 to 1e-2")));
         }
         if file.vary.is_empty() {
             return Err(fault("varies nothing: add a table [[vary]]".into()));

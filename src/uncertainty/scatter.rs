@@ -240,7 +240,7 @@ fn curved(name: &str, of: &QuantityScatter) -> Option<String> {
     let off = of.linear_standard_deviation / of.standard_deviation - 1.0;
     (off.abs() > NOT_LINEAR).then(|| {
         format!(
-            "`{name}` is not linear over the scatter of its inputs: by its slopes alone the standard deviation would be {:+.0} % off",
+            "`{name}` is not linear over the range of its inputs: a linear estimate of the standard deviation differs by {:+.0} %",
             100.0 * off
         )
     })

@@ -22,11 +22,11 @@ const TOLERANCE: f64 = 4e-5;
 /// What `scene` says of its inputs.
 ///
 /// # Errors
-/// [`Error::Usage`] if it says nothing or names too many.
+/// [`Error::Usage`] if it printed nothing or names too many.
 pub fn uncertainty_of(scene: &Scene) -> Result<&Uncertainty> {
     let uncertainty = scene.uncertainty.as_ref().ok_or_else(|| {
         Error::Usage(format!(
-            "scene `{}` does not say how uncertain its inputs are: add a table such as [uncertainty] \"plate.thickness\" = \"1 %\"",
+            "scene `{}` has no uncertain inputs: add a table such as [uncertainty] \"plate.thickness\" = \"1 %\"",
             scene.name
         ))
     })?;
@@ -169,19 +169,21 @@ pub fn study(
     scatter.notes.extend(failure.map(|record| {
         let reason = record.outcome.reason();
         format!(
-            "{lost} of {} impacts have no result and their rows are left out; the first: {reason}",
+            "{lost} of {} impacts have no result and their rows are omitted; the first: {reason}",
             plan.len()
         )
     }));
     let open = records.iter().filter(|record| plan.value(record, "converged") == Some(0.0)).count();
     if open > 0 {
         scatter.notes.push(format!(
-            "the time integration of {open} of {} impacts did not converge to {TOLERANCE:.0e}: their contacts amplify every error, and the scatter has a part of that",
+            "the time integration of {open} of {} impacts did not converge to {TOLERANCE:.0e}: their contacts amplify every error, which adds to the standard deviations",
             plan.len()
         ));
     }
     if reached == Some(false) {
-        scatter.notes.push(format!("{rows} rows don't give the accuracy asked for; more are not tried"));
+        scatter
+            .notes
+            .push(format!("{rows} samples do not reach the requested accuracy; this is the largest number"));
     }
     if let Some((dir, format)) = folder {
         Table::join(plan, dir, Shard::WHOLE)?.write(dir, "samples", format)?;

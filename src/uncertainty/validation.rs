@@ -9,7 +9,8 @@
 
 use crate::format::{prefixed, with_unit, words};
 use crate::result::Summary;
-use crate::uncertainty::QuantityScatter;
+use crate::scene::Model;
+use crate::uncertainty::{QuantityScatter, Scatter};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -81,6 +82,11 @@ impl Shown {
             Shown::ModelError => "model error shown",
         }
     }
+}
+
+/// The scatter of the result called `name`: of its own model if that is known; the reference and other programs scatter as model C.
+pub fn scatter_of<'s>(scatters: &'s BTreeMap<String, Scatter>, name: &str) -> Option<&'s Scatter> {
+    scatters.get(name).or_else(|| scatters.get(&Model::C.to_string()))
 }
 
 /// Standard numerical uncertainty of the quantity called `name` in `summary`; `None` if it is not known. That model A has one mode is its error,

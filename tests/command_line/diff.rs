@@ -29,7 +29,7 @@ fn a_coarser_reference_moves_and_the_models_stay() {
     let folder = tempfile::tempdir().unwrap();
     let [coarse, paper] = ["coarse", "paper"].map(|resolution| report(folder.path(), resolution));
     let (status, table, _) = impactcheck(&["diff", &paper, &paper]);
-    assert_eq!((status, table.trim_end()), (Some(0), "nothing moved"));
+    assert_eq!((status, table.trim_end()), (Some(0), "nothing changed"));
 
     let efficiency = |report: &str| -> f64 {
         let text = std::fs::read_to_string(Path::new(report).join("comparison.json")).unwrap();
@@ -113,10 +113,10 @@ fn the_page_has_every_move_where_it_belongs_and_the_largest_first() {
     }
     assert_eq!(seen, found["moved"].as_array().unwrap().len());
     assert!(found["verdicts"].as_array().unwrap().iter().all(|v| page.contains(v["a"].as_str().unwrap())));
-    // nothing moved is a page too
+    // nothing changed is a page too
     assert_eq!(impactcheck(&["diff", &paper, &paper, "--out", &file]).0, Some(0));
     let page = std::fs::read_to_string(&file).unwrap();
-    assert!(page.contains("Nothing moved") && !page.contains("<table"));
+    assert!(page.contains("Nothing changed") && !page.contains("<table"));
 }
 
 #[test]

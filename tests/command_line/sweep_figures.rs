@@ -77,7 +77,7 @@ fn curves_and_references_have_the_places_of_their_numbers() {
     let [x, y] = ["cx", "cy"].map(|name| number(name).last().unwrap().parse().unwrap());
     assert_eq!(number("cx").len(), 1 + 1, "in the legend and at its place");
     assert!(near([x, y], place(10e-3, 0.694_666)), "{x} {y}");
-    assert!(svg.contains("reference (95 % band)") && svg.contains("outer.radius, inner.radius in mm"));
+    assert!(svg.contains("reference (uncertainty 95 %)") && svg.contains("outer.radius, inner.radius in mm"));
     // between 10 and 14 mm the contact comes to last half the plate's first period
     let said: Vec<f64> =
         attributes(&svg, "line", &["said"], "x1").iter().map(|x| x.parse().unwrap()).collect();

@@ -5,8 +5,8 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use impactcheck::analytical::circular_plate::rigidity;
 use impactcheck::body::ModalBody;
 use impactcheck::body::continuum::{ContinuumPlate, MeshOptions};
-use impactcheck::comparison::budget::{BUDGET_QUANTITIES, CAUSES, QuantityBudget, budget};
-use impactcheck::comparison::{GateRules, compare_scene};
+use impactcheck::comparison::budget::{BUDGET_QUANTITIES, CAUSES, QuantityBudget, budget, of_results};
+use impactcheck::comparison::{ComparisonInput, GateRules};
 use impactcheck::kinds::plate_impact::PlateImpact;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::kinds::plate_impact::variants::mean_of_faces;
@@ -244,12 +244,11 @@ fn compared() -> (Scene, Outcome, Vec<Outcome>) {
 #[test]
 fn page_markdown_and_json_show_the_budget_and_bars_have_its_lengths() {
     let (scene, reference, reduced) = compared();
-    let mut alone = compare_scene(&scene, &reference, &reduced[..1]);
-    alone.add_budget(&scene).unwrap();
-    assert!(alone.budget.is_empty(), "model B alone has no budget");
-    let mut comparison = compare_scene(&scene, &reference, &reduced);
-    comparison.add_budget(&scene).unwrap();
-    let rows = comparison.budget.clone();
+    let alone = of_results(&scene, &reference.summary, &reduced[..1]).unwrap();
+    assert!(alone.is_empty(), "model B alone has no budget");
+    let rows = of_results(&scene, &reference.summary, &reduced).unwrap();
+    let input = ComparisonInput::new(&scene, &reference, &reduced);
+    let comparison = ComparisonInput { budget: rows.clone(), ..input }.compare();
     let scene_report = SceneReport {
         scene: &scene,
         comparison,

@@ -3,7 +3,7 @@
 
 use crate::synthetic_impact;
 use crate::synthetic_impact::{alter, gated_scene, reduced, reference, scene};
-use impactcheck::comparison::{Verdict, compare_scene};
+use impactcheck::comparison::{Check, ComparisonInput, Verdict, compare_scene};
 use impactcheck::kinds::plate_impact::CURVES;
 use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::result::History;
@@ -12,6 +12,36 @@ use impactcheck::scene::Scene;
 
 fn verdict(scene: &Scene, reference: &Outcome, reduced: &Outcome) -> Verdict {
     compare_scene(scene, reference, std::slice::from_ref(reduced)).verdict
+}
+
+/// Checks of the reference are gated like its own, whoever makes them; another solver's result is reported alone.
+#[test]
+fn what_else_is_known_is_judged_in_one_go() {
+    let (scene, reference, reduced) = (gated_scene(), reference(), [reduced()]);
+    let check = |verdict| Check {
+        check: "accepted_reference_efficiency".into(),
+        unit: "1".into(),
+        found: 0.7,
+        expected: 0.6,
+        bound: 0.01,
+        verdict,
+    };
+    let other = {
+        let mut other = reference.clone();
+        other.summary.model = Some("elsewhere".into());
+        other
+    };
+    for verdict in [Verdict::Pass, Verdict::Fail] {
+        let input = ComparisonInput::new(&scene, &reference, &reduced);
+        let found =
+            ComparisonInput { accepted: vec![check(verdict)], other: Some(&other), ..input }.compare();
+        assert_eq!((found.verdict, found.models[0].verdict), (verdict, verdict));
+        assert_eq!(found.integrity.last(), Some(&check(verdict)));
+        assert_eq!(found.reference_check.as_ref().unwrap().program, "elsewhere");
+        // rows do not depend on it
+        let alone = compare_scene(&scene, &reference, &reduced);
+        assert_eq!(found.models[0].discrepancies, alone.models[0].discrepancies);
+    }
 }
 
 /// Applies `change` to the reference, then to the reduced result; each must fail although the

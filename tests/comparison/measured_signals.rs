@@ -187,7 +187,7 @@ fn one_signal_is_enough_and_missing_free_flight_is_told() {
     // 5 us of it, some fifty samples, are before the first touch, but the instrument smears the impact over all of them
     let said = error.to_string().replace('\u{2502}', " ").split_whitespace().collect::<Vec<_>>().join(" ");
     let (before, after) =
-        said.split_once(" samples before the first touch, ").unwrap_or_else(|| panic!("{said}"));
+        said.split_once(" samples before the first contact, ").unwrap_or_else(|| panic!("{said}"));
     let early: usize = before.rsplit(' ').next().unwrap().parse().unwrap();
     assert!((10..=100).contains(&early) && after.starts_with("0 of them"), "{said}");
     let cut = aligned(&part(&|t| t < 90e-6), &truth, &setup, Speed::Scene);
@@ -202,11 +202,13 @@ fn models_are_measured_by_the_same_metrics_and_a_series_by_mean_and_scatter() {
         .map(|seed| record(&truth, &SIGNALS, Disturbance { seed, noise: 0.002, ..DISTURBED }))
         .collect();
     let reduced = [model(&scene, Model::A), model(&scene, Model::C)];
-    let found = compare(&scene, &records, &reference, &reduced, (BANDWIDTH, Speed::Scene)).unwrap();
+    let certain = Default::default();
+    let found = compare(&scene, &records, &reference, &reduced, (BANDWIDTH, Speed::Scene), &certain).unwrap();
     // another program's result has no eigenfrequency
     let mut imported = reference.clone();
     *imported.summary.quantities.value_mut("first_frequency").unwrap() = None;
-    let with_imported = compare(&scene, &records, &imported, &[], (BANDWIDTH, Speed::Scene)).unwrap();
+    let with_imported =
+        compare(&scene, &records, &imported, &[], (BANDWIDTH, Speed::Scene), &certain).unwrap();
     assert_eq!(with_imported.records, found.records);
     let series = found.efficiency.unwrap();
     assert_eq!(series, Series::of(series.values.clone()).unwrap());

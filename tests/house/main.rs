@@ -47,21 +47,44 @@ fn rooms_that_import_each_other() {
     ratchet("imports in circles of rooms", &found, 0);
 }
 
-/// The imports between rooms of `package` that are part of a circle, each with the files that have it.
-fn circular(package: &str) -> Vec<String> {
+/// Drawings take numbers and labels: they know no scene, no result, no report.
+#[test]
+fn rooms_that_drawings_import() {
+    let imports = imports("src");
+    let found: Vec<&str> =
+        imports.keys().filter(|(room, _)| room == "plot").map(|(_, other)| &**other).collect();
+    assert_eq!(found, ["format"], "besides numbers in words, `plot` imports nothing");
+}
+
+/// Importing room and imported one, with the files that import.
+type Imports = BTreeMap<(String, String), BTreeSet<String>>;
+
+/// The imports between rooms of `package`.
+fn imports(package: &str) -> Imports {
     let inside = format!("{package}/");
     let sources: Vec<Source> = sources().filter(|source| source.path.starts_with(&inside)).collect();
     let rooms: BTreeSet<&str> = sources.iter().filter_map(|source| source.room(package)).collect();
-    let mut imports: BTreeMap<(String, String), BTreeSet<&str>> = BTreeMap::new();
+    let mut imports = Imports::new();
     for source in &sources {
         let Some(room) = source.room(package) else { continue };
         for other in source.imports(package) {
             if other != room && rooms.contains(other.as_str()) {
                 let files = imports.entry((room.to_owned(), other)).or_default();
-                files.insert(&source.path[inside.len()..]);
+                files.insert(source.path[inside.len()..].to_owned());
             }
         }
     }
+    imports
+}
+
+/// An import in a line.
+fn told(((room, other), files): ((String, String), BTreeSet<String>)) -> String {
+    format!("{room} -> {other}: {}", files.into_iter().collect::<Vec<_>>().join(" "))
+}
+
+/// The imports between rooms of `package` that are part of a circle.
+fn circular(package: &str) -> Vec<String> {
+    let mut imports = imports(package);
     // rooms that import nothing, or that nothing imports, are in no circle; without them others are such
     loop {
         let [from, to] = [0, 1].map(|side| {
@@ -74,10 +97,7 @@ fn circular(package: &str) -> Vec<String> {
             break;
         }
     }
-    let told = |((room, other), files): (&(String, String), &BTreeSet<&str>)| {
-        format!("{package}: {room} -> {other}: {}", files.iter().copied().collect::<Vec<_>>().join(" "))
-    };
-    imports.iter().map(told).collect()
+    imports.into_iter().map(|import| format!("{package}: {}", told(import))).collect()
 }
 
 /// What shows that the program is right and fast is no part of it.

@@ -1,7 +1,7 @@
 //! The reduced seal seat beside a reference: verdicts, bands, report.
 
 use super::reduced::{fixture, model, sixteen};
-use impactcheck::comparison::{GateRules, Verdict, compare_scene};
+use impactcheck::comparison::{ComparisonInput, GateRules, Verdict, compare_scene};
 use impactcheck::kinds::flight::{flight_summary, launch};
 use impactcheck::report::{self, Cost, Report, SceneReport};
 use impactcheck::result::{Outcome, Source};
@@ -109,14 +109,18 @@ fn on_a_common_mesh_the_band_of_the_difference_decides() {
     let speed = reference.summary.value("sphere_speed").expect("a speed");
     reference.summary.uncertainty.insert("sphere_speed".into(), 0.1 * speed);
     let good = sixteen().run_with_history(1e-3).expect("run");
-    let compared = || compare_scene(&scene, &reference, std::slice::from_ref(&good));
-    assert_eq!(compared().verdict, Verdict::Undecided);
+    let alone = compare_scene(&scene, &reference, std::slice::from_ref(&good));
+    assert_eq!(alone.verdict, Verdict::Undecided);
+    let with_coarser = |other: &Outcome, model: &Outcome| {
+        let coarser = Some((other, std::slice::from_ref(model)));
+        let finer = ComparisonInput::new(&scene, &reference, std::slice::from_ref(&good));
+        ComparisonInput { coarser, ..finer }.compare()
+    };
     let judged = |of_reference: fn(f64) -> f64, of_model: fn(f64) -> f64| {
         let (mut other, mut model) = (reference.clone(), good.clone());
         alter(&mut other, "sphere_speed", of_reference);
         alter(&mut model, "sphere_speed", of_model);
-        let mut compared = compared();
-        compared.judge_on_common_mesh(&compare_scene(&scene, &other, &[model]), 1.5);
+        let compared = with_coarser(&other, &model);
         let row = compared.models[0].discrepancy("sphere_speed").expect("a row").clone();
         assert_eq!(row.verdict, compared.verdict);
         assert_eq!(row.would_decide.is_some(), row.verdict == Verdict::Undecided);
@@ -130,11 +134,9 @@ fn on_a_common_mesh_the_band_of_the_difference_decides() {
     assert_eq!(judged(|v| v, |v| 1.004 * v).0, Verdict::Undecided);
     assert_eq!(judged(|v| 1.004 * v, |v| v).0, Verdict::Undecided);
     // what is no narrower than the reference's own band does not count
-    let mut far = compared();
     let mut other = reference.clone();
     alter(&mut other, "sphere_speed", |v| 1.5 * v);
-    far.judge_on_common_mesh(&compare_scene(&scene, &other, std::slice::from_ref(&good)), 1.5);
-    assert_eq!(far, compared());
+    assert_eq!(with_coarser(&other, &good), alone);
 }
 
 #[test]
@@ -162,7 +164,7 @@ fn report_shows_the_seat_among_the_scenes() {
     assert!(document["scenes"][0]["models"][0]["summary"]["sphere_angle"].is_f64());
     assert!(report::junit(&report).expect("JUnit").contains("classname=\"seal-seat-improved.C\""));
     assert!(report::markdown(&report).contains("## seal-seat-improved: pass"));
-    assert!(report::terminal(&report).contains(&format!("{angle:+.2}°")));
+    assert!(report::terminal(&report, report::Width::Narrow).contains(&format!("{angle:+.2}°")));
     let folder = tempfile::tempdir().expect("folder");
     let written = report::write(&report, folder.path()).expect("files");
     for name in

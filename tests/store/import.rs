@@ -75,7 +75,7 @@ fn what_a_map_gets_wrong_is_told_and_nothing_is_stored() {
         (
             "column = 1, unit = \"s\"",
             "column = 1, unit = \"s\", offset = \"1 us\"",
-            "t = 0 has to be the first touch",
+            "t = 0 must be the first contact",
         ),
         ("column = 4, unit = \"N\"", "column = 4, unit = \"mm\"", "`mm` is the unit of something else"),
         ("column = 5", "column = 9", "there is no column 9"),

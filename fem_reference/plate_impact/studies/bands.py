@@ -34,7 +34,7 @@ FACTORS = [RATIO**k for k in range(2, MESHES + 4)]
 TRUTH = 2.0 * FACTORS[0]
 """Of the finest mesh."""
 LONGEST = 20.0
-"""Processor time of the finest mesh's loop, s; scenes that would take longer are left out."""
+"""Processor time of the finest mesh's loop, s; scenes that would take longer are omitted."""
 
 
 @dataclass(frozen=True)

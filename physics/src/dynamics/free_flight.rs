@@ -45,7 +45,7 @@ pub fn next_touch(system: &System, q: &[f64], v: &[f64], limit: f64) -> Result<F
         }
     }
     Err(Error::Solver(format!(
-        "free flight: no touch and no end found within {start:.3e} s ({MAX_EVALUATIONS} evaluations); set `run.end_time`"
+        "free flight: no contact and no end found within {start:.3e} s ({MAX_EVALUATIONS} evaluations); set `run.end_time`"
     )))
 }
 

@@ -242,7 +242,7 @@ impl<'a> DryStepper<'a> {
             )
         } else {
             format!(
-                "reduced model: at t = {:.6e} s, with contact forces of {outer:.4} N and {inner:.4} N, the contacts find no equilibrium: the residual flexibility of the modes that are left out does not hold for contact patches as wide as these; take fewer modes, or model B",
+                "reduced model: at t = {:.6e} s, with contact forces of {outer:.4} N and {inner:.4} N, the contacts find no equilibrium: the residual flexibility of the truncated modes is not valid for such large contact areas; take fewer modes, or model B",
                 self.time
             )
         })

@@ -17,9 +17,8 @@ pub fn ledger_check(energy: f64, momentum: f64, tolerance: f64) -> Result<Option
     let (least, most) = REFUSED_RANGE;
     let refused = (REFUSED * tolerance).clamp(least, most).max(tolerance);
     let (name, residual) = if momentum > energy { ("momentum", momentum) } else { ("energy", energy) };
-    let unbalanced = format!(
-        "the ledger of {name} does not balance: {residual:.1e} of what there was at the start is unaccounted for"
-    );
+    let unbalanced =
+        format!("the balance of {name} is not closed: the residual is {residual:.1e} of the initial value");
     // false for a value that is not a number
     let within = |bound: f64| energy <= bound && momentum <= bound;
     if !within(refused) {

@@ -173,7 +173,7 @@ impl MovingBody {
         };
         let time = first_fall(motion, [0.0, patience], bound, 1e-14 * stack.gap).ok_or_else(|| {
             Error::Solver(format!(
-                "`outer.gap` is {} m, but the tip of the stack comes to {:.4e} m only: it never touches the plate",
+                "`outer.gap` is {} m, but the tip of the stack comes to {:.4e} m only: it never reaches the plate",
                 stack.gap,
                 farthest.get()
             ))

@@ -46,14 +46,14 @@ impl Ending {
         match self {
             Ending::Seat(_) | Ending::Passed => None,
             Ending::Hollow(x) => {
-                Some(format!("the sphere comes to rest between or beside the seats, at x = {}", mm(*x)))
+                Some(format!("the sphere comes to rest outside both seats, at x = {}", mm(*x)))
             }
             Ending::Held(x) => Some(format!("friction holds the sphere on its way, at x = {}", mm(*x))),
             Ending::Moves => Some(
                 "the sphere still moves at the flight's `end_time`, with energy to leave every seat".into(),
             ),
             Ending::Bounces => Some(format!(
-                "the sphere still bounces after {MOST_EVENTS} touches, with energy to leave every seat: its restitution takes too little"
+                "the sphere still bounces after {MOST_EVENTS} contacts, with energy to leave every seat: its restitution is too high"
             )),
         }
     }

@@ -90,7 +90,7 @@ fn warning(ending: Ending, share: f64) -> Option<String> {
     }
     (share > 0.0 && share < 1.0).then(|| {
         format!(
-            "of the launches in the bands of speed, angle and restitution {:.0} % end in the other seat: the verdict of one flight says little",
+            "{:.0} % of the launches within the ranges of speed, angle and restitution end in the other seat: the result of one flight is not reliable",
             100.0 * share
         )
     })

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 /// A theory that is relied on up to a bound of a dimensionless measure.
 #[derive(Debug, Clone, Copy)]
 pub struct Theory {
-    /// The measure, as part of names.
+    /// The measure, as part of names; after the place in sentences.
     measure: &'static str,
     /// Largest value up to which the theory is relied on.
     bound: f64,
-    /// What is wrong beyond.
+    /// What is wrong beyond, and what to do.
     beyond: &'static str,
 }
 
@@ -20,14 +20,14 @@ pub struct Theory {
 pub const HERTZ: Theory = Theory {
     measure: "contact_radius_over_tip_radius",
     bound: 0.2,
-    beyond: "the contact is none of half-spaces with small displacements any more; for a rigid sphere Hertz's force is 0.4 % high at 0.2 and 3 % at 0.5",
+    beyond: "Hertz's law assumes a contact that is small compared with the tip; for a rigid sphere its force is 0.4 % too large at 0.2 and 3 % at 0.5",
 };
 
 /// Linear elasticity: largest shear strain below a contact, 0.31 p0 / G (Johnson, Contact Mechanics, 1985, section 4.2).
 pub const SMALL_STRAIN: Theory = Theory {
     measure: "shear_strain",
     bound: 0.02,
-    beyond: "linear elasticity leaves out terms of the order of the strain, and few solids stay elastic",
+    beyond: "linear elasticity is not accurate at such strains, and most solids yield before",
 };
 
 /// Linear theory of plates: deflection over thickness w/t. A clamped plate under a central force is stiffer by 0.443 (w/t)^2
@@ -35,7 +35,7 @@ pub const SMALL_STRAIN: Theory = Theory {
 pub const SMALL_DEFLECTION: Theory = Theory {
     measure: "deflection_over_thickness",
     bound: 0.3,
-    beyond: "a plate that is bent so far also stretches, which linear theory leaves out; a clamped one is 4 % stiffer at 0.3 and 11 % at 0.5",
+    beyond: "linear plate theory omits that the plate stretches; a clamped plate is 4 % stiffer at 0.3 and 11 % at 0.5",
 };
 
 /// Linear theory of beams: deflection of the tip over the length x. A cantilever that a moment bends to a circle deflects less by x^2/3, and
@@ -43,7 +43,7 @@ pub const SMALL_DEFLECTION: Theory = Theory {
 pub const SMALL_ROTATION: Theory = Theory {
     measure: "tip_deflection_over_length",
     bound: 0.2,
-    beyond: "linear theory of beams leaves out that the tip turns with the beam; one that a moment bends deflects 1.3 % less at 0.2 and 8 % less at 0.5",
+    beyond: "linear beam theory omits large rotations; a beam bent by a moment deflects 1.3 % less at 0.2 and 8 % less at 0.5",
 };
 
 /// Quasi-static contact: impact speed over sqrt(E/rho), the wave speed of a bar, of the slowest body (Johnson 1985, section
@@ -51,7 +51,7 @@ pub const SMALL_ROTATION: Theory = Theory {
 pub const QUASI_STATIC: Theory = Theory {
     measure: "impact_speed_over_wave_speed",
     bound: 0.01,
-    beyond: "the contact is no longer quasi-static: some per cent of the energy stay in waves within bodies that the reduced models take as rigid",
+    beyond: "the contact is not quasi-static; some per cent of the energy remain in waves within the bodies, which the reduced models take as rigid",
 };
 
 /// Elasticity: Hertz's largest pressure over 1.6 times the yield strength, at which plastic flow begins below the surface
@@ -59,14 +59,14 @@ pub const QUASI_STATIC: Theory = Theory {
 pub const ELASTICITY: Theory = Theory {
     measure: "contact_pressure_over_onset_of_yield",
     bound: 1.0,
-    beyond: "plastic flow has begun below the surface (at 1.6 times the yield strength), and the result is elastic",
+    beyond: "the contact yields (below the surface, from a pressure of 1.6 times the yield strength on), but the model is elastic; specify `hardening` of the material, or reduce the speed",
 };
 
 /// The plate's elasticity beside its contacts: largest bending stress along its faces over its yield strength.
 pub const ELASTIC_BENDING: Theory = Theory {
     measure: "bending_stress_over_yield_strength",
     bound: 1.0,
-    beyond: "the plate yields in bending, beside its contacts too, which the reduced models leave out",
+    beyond: "the plate yields in bending, which the reduced models omit",
 };
 
 /// How near a result comes to the bound of a theory.
@@ -131,10 +131,17 @@ impl Limit {
             ELASTIC_BENDING,
         ];
         let theory = theories.iter().find(|theory| self.measure.ends_with(theory.measure))?;
-        let measure = self.measure.replace('_', " ");
+        let measure = self.measure.replace("_over_", " / ").replace('_', " ");
+        let value = two_digits(self.value);
         self.is_exceeded()
-            .then(|| format!("{measure} is {:.2e}, beyond {}: {}", self.value, self.bound, theory.beyond))
+            .then(|| format!("{measure} is {value}, above its limit of {}: {}", self.bound, theory.beyond))
     }
+}
+
+/// `value` with two significant digits.
+fn two_digits(value: f64) -> String {
+    let decimals = 1.0 - value.abs().log10().floor();
+    if decimals >= 0.0 { format!("{value:.*}", decimals as usize) } else { format!("{value:.0}") }
 }
 
 #[cfg(test)]
@@ -166,7 +173,10 @@ mod tests {
         assert_eq!(HERTZ.at("outer", 0.2).warning(), None);
         assert_eq!(HERTZ.at("outer", f64::NAN).warning(), None);
         let told = HERTZ.at("outer", 0.25).warning().expect("beyond");
-        assert!(told.starts_with("outer contact radius over tip radius is 2.50e-1, beyond 0.2: "), "{told}");
+        assert!(
+            told.starts_with("outer contact radius / tip radius is 0.25, above its limit of 0.2: "),
+            "{told}"
+        );
         let unknown = Limit { measure: "x".into(), value: 2.0, bound: 1.0 };
         assert_eq!(unknown.warning(), None);
     }

@@ -28,7 +28,7 @@ pub(crate) use table::quantities;
 pub use table::{Quantity, Table};
 
 /// What is said of a run that ended while bodies touched.
-pub const CUT: &str = "the run ends at `run.end_time` while bodies touch, which leaves open what the impact comes to; set a later end, or none";
+pub const CUT: &str = "the run ends at `run.end_time` while bodies are in contact, so that final values are not determined; set a later end, or none";
 
 /// What a run gives, whatever the kind of scene and whoever ran it.
 #[derive(Debug, Clone, PartialEq)]

@@ -162,7 +162,7 @@ impl<'a> Checker<'a> {
             (Kind::Uncertainty, DeValue::Table(_)) => None,
             (kind, found) => {
                 let (needed, help) = needed(kind, place.path);
-                let message = format!("but it has to be {needed}; found: {}", found.type_str());
+                let message = format!("but it must be {needed}; found: {}", found.type_str());
                 self.fault(place, value, &message, "wrong type", help)
             }
         }
@@ -194,7 +194,7 @@ impl<'a> Checker<'a> {
                     values.insert(key.get_ref().to_string(), Checked::Table(checked));
                 }
                 found => {
-                    let message = format!("but it has to be a table; found: {}", found.type_str());
+                    let message = format!("but it must be a table; found: {}", found.type_str());
                     self.fault::<()>(
                         &inner,
                         value,
@@ -229,7 +229,7 @@ impl<'a> Checker<'a> {
             match item.get_ref() {
                 DeValue::Table(table) => tables.push(self.table(&place, table, fields)),
                 found => {
-                    let message = format!("but it has to be a table; found: {}", found.type_str());
+                    let message = format!("but it must be a table; found: {}", found.type_str());
                     return self.fault(&place, item, &message, "wrong type", help);
                 }
             }
@@ -269,7 +269,7 @@ impl<'a> Checker<'a> {
         if let Some(count) = count.filter(|c| (low..=high).contains(c)) {
             return Some(Checked::Count(count));
         }
-        let message = format!("but it has to be a whole number from {low} to {high}");
+        let message = format!("but it must be a whole number from {low} to {high}");
         self.fault(
             place,
             value,
@@ -316,7 +316,7 @@ impl<'a> Checker<'a> {
         if let Some(texts) = texts.filter(valid) {
             return Some(Checked::Texts(texts));
         }
-        let message = format!("but it has to be a list of 1 to {most} texts, the first not empty");
+        let message = format!("but it must be a list of 1 to {most} texts, the first not empty");
         let help = "write a list in square brackets, for example [\"python3\", \"my_model.py\"]";
         self.fault(place, value, &message, "wrong entries", help.to_owned())
     }
@@ -368,7 +368,7 @@ impl<'a> Checker<'a> {
                 .map_err(|_| QuantityError::OutOfRange),
             DeValue::String(text) => quantity::parse(text, dimension),
             found => {
-                let message = format!("but it has to be {needed}; found: {}", found.type_str());
+                let message = format!("but it must be {needed}; found: {}", found.type_str());
                 return self.fault(place, value, &message, "wrong type", help);
             }
         };
@@ -380,7 +380,7 @@ impl<'a> Checker<'a> {
                         format!("which is not a number with a unit; {needed} is needed")
                     }
                     QuantityError::UnknownUnit(u) if u.starts_with(',') => {
-                        format!("but decimals stand behind a point, not a comma; {needed} is needed")
+                        format!("but the decimal separator is a point, not a comma; {needed} is needed")
                     }
                     QuantityError::UnknownUnit(u) => {
                         format!(
@@ -401,7 +401,7 @@ impl<'a> Checker<'a> {
         };
         if !bound.holds(number) {
             let finite = if number.is_finite() { "" } else { "finite and " };
-            let message = format!("but it has to be {finite}{range}");
+            let message = format!("but it must be {finite}{range}");
             return self.fault(place, value, &message, "out of range", help);
         }
         Some(number)

@@ -107,7 +107,7 @@ mod tests {
             (entry("../mine"), "can't be a name"),
             (entry("-rf"), "can't be a name"),
             (entry("mine") + "[tolerances.yours]\nefficiency = 0.1", "there are A, B, C, mine"),
-            (entry("mine").replace("[\"true\"]", "\"true\""), "but it has to be a list"),
+            (entry("mine").replace("[\"true\"]", "\"true\""), "but it must be a list"),
             (entry("mine").replace("\"true\"", "\"\""), "1 to 64 texts, the first not empty"),
             (entry("mine") + "timeout = \"0 s\"", "greater than 0 s"),
             ("[[external]]\nname = \"mine\"".into(), "`external[1].command` is missing"),

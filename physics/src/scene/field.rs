@@ -81,7 +81,7 @@ impl Field {
         let unit = self.unit();
         let shown = self.dimension().suffix();
         let rejected =
-            |range: String| Rejected(format!("`{}` is {value}{shown}, but it has to be {range}", self.path));
+            |range: String| Rejected(format!("`{}` is {value}{shown}, but it must be {range}", self.path));
         match self.kind {
             Kind::Quantity(_, bound) | Kind::Quantities(_, bound, _) if !bound.holds(value) => {
                 Err(rejected(bound.describe(unit)))
@@ -112,7 +112,7 @@ pub(super) fn without_effect(values: &Values, path: &str) -> Option<&'static str
         return Some("it is the flight's alone, and changes nothing of the impact");
     }
     if of_material(".hardening").is_some() {
-        return Some("their contact law knows no hardening, which is the reference's alone");
+        return Some("the reduced contact law omits hardening; only the reference includes it");
     }
     let material = of_material(".yield_strength")?;
     (!has(values, &format!("{material}.hardening")))

@@ -65,12 +65,12 @@ impl Grammar {
             optional(
                 "vibration",
                 Kind::Table(&VIBRATION),
-                "How the valve is shaken; absent = not asked for. Changes nothing of the impact",
+                "Vibration of the valve; absent = none. Does not change the impact",
             ),
             optional(
                 "external",
                 Kind::Tables(&EXTERNAL, 16),
-                "Programs of one's own that solve the scene too; they run only with --allow-external",
+                "Your own programs that solve the scene too; they run only with --allow-external",
             ),
         ]);
         Self { dialects, keys: keys.leak() }
@@ -92,7 +92,7 @@ impl Grammar {
 static RUN: [Field; 1] = [optional(
     "end_time",
     positive(Dimension::TIME),
-    "End time after the first touch; absent = until no further contact is possible",
+    "End time after the first contact; absent = until no further contact is possible",
 )];
 
 fn unit_below(fields: &[Field], path: &str) -> Option<&'static str> {

@@ -103,7 +103,7 @@ fn contradiction(keys: &Node) -> Option<(&'static str, &'static str)> {
         (
             has("relaxation") && has("loss_factor"),
             "loss_factor",
-            "and `relaxation` say the same thing: keep one of them",
+            "and `relaxation` specify the same: keep one of them",
         ),
         (
             has("loss_factor") && !has("modulus_frequency"),

@@ -53,8 +53,10 @@ impl Grammar {
         if checker.problems.is_empty() {
             note(material::collisions(&Node(&values))?, root, &mut checker.problems);
             if let Err(message) = with_record(&mut values, source_name) {
-                let (place, help) =
-                    (span_of(root, "vibration.file"), "name a table beside the scene file".to_owned());
+                let (place, help) = (
+                    span_of(root, "vibration.file"),
+                    "name a table in the folder of the scene file".to_owned(),
+                );
                 checker.problems.add(place.unwrap_or(0..0), message, "no record", help);
             }
         }

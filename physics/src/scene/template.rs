@@ -82,7 +82,7 @@ impl Template {
         fields_of(self.grammar.keys, &self.values)
     }
 
-    /// What the scene file has in `field`, in SI; `None` if it says nothing there.
+    /// What the scene file has in `field`, in SI; `None` if it printed nothing there.
     pub fn number(&self, field: &Field) -> Option<f64> {
         number_in(&self.values, field)
     }
@@ -240,7 +240,7 @@ mod tests {
     fn bounds_are_those_of_the_file() {
         let template = template();
         for (path, value, part) in [
-            ("plate.radius", -1e-3, "`plate.radius` is -0.001 m, but it has to be greater than 0 m"),
+            ("plate.radius", -1e-3, "`plate.radius` is -0.001 m, but it must be greater than 0 m"),
             ("materials.steel.poisson_ratio", 0.5, "less than 0.5"),
             ("reduced.modes", 2.5, "a whole number from 1"),
             ("outer.speed", f64::NAN, "NaN"),

@@ -58,7 +58,7 @@ impl Checker<'_> {
             self.fault::<()>(
                 &place,
                 value,
-                "but it has to be a table",
+                "but it must be a table",
                 "wrong type",
                 "write a table [tolerances.B]".into(),
             );
@@ -85,7 +85,7 @@ impl Checker<'_> {
                     self.fault::<()>(
                         &place,
                         value,
-                        "but it has to be a table",
+                        "but it must be a table",
                         "wrong type",
                         format!("write a table [{path}]"),
                     );

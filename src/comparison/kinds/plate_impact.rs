@@ -32,7 +32,7 @@ use crate::body::continuum::MeshOptions;
 use crate::comparison::Verdict;
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
-use crate::result::{CUT, Summary};
+use crate::result::{CUT, Outcome, Summary};
 use crate::scene::Scene;
 use serde::Serialize;
 
@@ -118,6 +118,19 @@ struct ModeCounts {
     c: usize,
     many_kirchhoff: usize,
     many_continuum: usize,
+}
+
+/// The budget of `scene` if models B and C are both among the results `reduced`; else empty.
+///
+/// # Errors
+/// As [`budget`].
+pub fn of_results(scene: &Scene, reference: &Summary, reduced: &[Outcome]) -> Result<Vec<QuantityBudget>> {
+    let summary = |name: &str| {
+        let mut summaries = reduced.iter().map(|outcome| &outcome.summary);
+        summaries.find(|summary| summary.model.as_deref() == Some(name))
+    };
+    let pair = summary("B").zip(summary("C"));
+    pair.map_or(Ok(Vec::new()), |(b, c)| budget(scene, reference, b, c))
 }
 
 /// The budget of the difference between model `b` and `reference`; `c` is model C's result for the same scene.
@@ -241,7 +254,7 @@ fn quantity_budget(
 fn switches(modes: ModeCounts) -> [String; CAUSES.len()] {
     let ModeCounts { b, c, many_kirchhoff, many_continuum } = modes;
     [
-        format!("model B as it stands → relative error {TIGHT:e}"),
+        format!("model B unchanged → relative error {TIGHT:e}"),
         format!("{b} → {many_kirchhoff} Kirchhoff modes"),
         format!("Kirchhoff plate → mean of both faces of the continuum plate ({c} modes and residual)"),
         "contact with half-spaces → contact with the plate, squeezed from both sides".into(),

@@ -2,7 +2,7 @@
 
 use super::{Cell, Study};
 use crate::error::{Error, Result};
-use crate::report::{ChartPanel, Series, chart};
+use crate::plot::{ChartPanel, Series, chart};
 
 /// A column as it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,7 @@ use super::{Cell, Claim, Study, Verdict};
 use crate::error::{Error, Result};
 use crate::file::write_file;
 use crate::format::significant;
-use crate::report::png;
+use crate::plot::png;
 use std::path::{Path, PathBuf};
 
 /// Rows of a study that the terminal shows.

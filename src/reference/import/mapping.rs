@@ -126,7 +126,7 @@ impl Mapping {
             let unit = mapped.unit.as_deref().map_or(Ok(1.0), |unit| table::in_si(unit, si));
             let unit = unit.map_err(|reason| format!("columns.{name}: {reason}"))?;
             if mapped.sign.abs() != 1.0 {
-                return Err(format!("columns.{name}.sign is {}, but it has to be 1 or -1", mapped.sign));
+                return Err(format!("columns.{name}.sign is {}, but it must be 1 or -1", mapped.sign));
             }
             let offset = mapped.offset.as_ref().map_or(Ok(0.0), |offset| offset.in_si(name, si))?;
             Ok(Column { name, index, factor: mapped.sign * unit, offset })
@@ -150,7 +150,7 @@ impl Mapping {
         };
         let bands = of(&self.uncertainty)?;
         match bands.iter().find(|(_, band)| **band < 0.0) {
-            Some((name, band)) => Err(format!("uncertainty.{name} is {band}, but it has to be 0 or more")),
+            Some((name, band)) => Err(format!("uncertainty.{name} is {band}, but it must be 0 or more")),
             None => Ok([of(&self.quantities)?, bands]),
         }
     }

@@ -92,7 +92,7 @@ fn history(
     };
     let delimiter = if form.delimiter == "spaces" { "," } else { &form.delimiter };
     let &[delimiter] = delimiter.as_bytes() else {
-        return Err(format!("table.delimiter is `{delimiter}`, but it has to be one character or `spaces`"));
+        return Err(format!("table.delimiter is `{delimiter}`, but it must be one character or `spaces`"));
     };
     let kind = kinds::of(scene);
     let mut reader = table::csv_reader(text.as_bytes(), delimiter);
@@ -129,7 +129,7 @@ fn from_first_touch(columns: Columns) -> std::result::Result<Columns, String> {
     let first = time.partition_point(|t| *t < 0.0);
     if first == time.len() || (first == 0 && time[0] > 0.0) {
         return Err(format!(
-            "its times are from {} s to {} s; t = 0 has to be the first touch (columns.time.offset shifts them)",
+            "its times are from {} s to {} s; t = 0 must be the first contact (columns.time.offset shifts them)",
             time[0],
             time[time.len() - 1]
         ));

@@ -42,12 +42,12 @@ pub fn plate_modes(python: &Path, scene: &Scene, count: usize) -> Result<Vec<Pla
     let output = command.output().map_err(|e| failed(format!("{} can't be run: {e}", python.display())))?;
     if !output.status.success() {
         let log = String::from_utf8_lossy(&output.stderr);
-        return Err(failed(log.lines().last().unwrap_or("the solver failed and says nothing").to_owned()));
+        return Err(failed(log.lines().last().unwrap_or("the solver failed without a message").to_owned()));
     }
     let document: ModesDocument = serde_json::from_slice(&output.stdout)
         .map_err(|e| failed(format!("the answer can't be read: {e}")))?;
     if document.modes.len() != count {
-        return Err(failed(format!("{} modes came back, {count} were asked for", document.modes.len())));
+        return Err(failed(format!("{} modes were returned, {count} were requested", document.modes.len())));
     }
     let mode = |m: SlepcMode| PlateMode { frequency: m.frequency, longitudinal: m.longitudinal };
     Ok(document.modes.into_iter().map(mode).collect())

@@ -187,7 +187,7 @@ pub fn make_seat_mesh(
         .map_err(|e| Error::Solver(format!("{} can't be run: {e}", python.display())))?;
     let failed = |why: &str| Error::Solver(format!("meshing the seat of `{}`: {why}", scene.name));
     if !ending.status.success() {
-        return Err(failed(ending.log.lines().last().unwrap_or("it failed and says nothing")));
+        return Err(failed(ending.log.lines().last().unwrap_or("it failed without a message")));
     }
     intact(&out).ok_or_else(|| failed("it wrote no mesh with its description"))
 }

@@ -3,15 +3,14 @@
 mod plate_impact;
 mod seal_seat;
 
-pub use plate_impact::{Animation, film};
 pub use seal_seat::{Arrow, seat_picture};
 
-use super::figure_geometry::PanelOf;
-use super::section::Section;
-use super::summary_column::SummaryColumn;
-use super::{Attachments, SceneReport, Theme, figure};
 use crate::kinds::{self, KINDS};
 use crate::reference::Stored;
+use crate::report::figure::geometry::PanelOf;
+use crate::report::page::section::Section;
+use crate::report::summary_column::SummaryColumn;
+use crate::report::{Attachments, SceneReport, Theme, figure};
 use crate::scene::Scene;
 use maud::{Markup, html};
 

@@ -55,7 +55,7 @@ pub(in crate::body) fn lowest_modes(
     }
     if 2 * wanted > body.elastic_size() {
         return Err(Error::Solver(format!(
-            "{wanted} modes are asked of a continuum mesh with {} degrees of freedom; it gives at most half as many",
+            "{wanted} modes are requested of a continuum mesh with {} degrees of freedom; it has at most half as many",
             body.elastic_size()
         )));
     }

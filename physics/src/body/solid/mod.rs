@@ -2,7 +2,7 @@
 //!
 //! The discrete system is that of the finite-element reference on the same mesh: straight linear or quadratic
 //! tetrahedra, lumped mass. The interface is the set of nodes at which other bodies may touch; under forces on it the body
-//! answers with its modes, and with the static residual of all the modes that are left out.
+//! answers with its modes, and with the static residual of all the modes that are omitted.
 
 mod elasticity;
 mod factor;
@@ -145,7 +145,7 @@ impl InterfaceBody {
     pub fn residual(&self, modes: usize) -> Result<Vec<f64>> {
         if modes > self.omega.len() {
             return Err(Error::Usage(format!(
-                "{modes} modes of a solid that has {} are asked for",
+                "{modes} modes of a solid that has {} are requested",
                 self.omega.len()
             )));
         }

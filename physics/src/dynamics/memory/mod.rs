@@ -208,7 +208,7 @@ impl Memory {
         let widest = self.bodies.contacts.iter().map(Contact::widest).fold(0.0, f64::max);
         (widest > WIDEST).then(|| {
             format!(
-                "a contact that yields is {widest:.2} of its tip radius wide; its law is for small strains and was compared with finite elements up to {WIDEST:.2}"
+                "a plastic contact has a radius of {widest:.2} tip radii; its law assumes small strains and was compared with finite elements up to {WIDEST:.2}"
             )
         })
     }
@@ -276,7 +276,7 @@ fn hardening_left_out(material: &Material, system: &System, hits: &[HertzImpact;
     let share = strain * plasticity.hardening / plasticity.yield_strength;
     (share > HARDENED).then(|| {
         format!(
-            "the contact law knows no hardening, but the yield stress of `{}` grows by about {:.0} % under the contacts",
+            "the contact law omits hardening, but the yield stress of `{}` grows by about {:.0} % under the contacts",
             material.name,
             100.0 * share
         )
@@ -291,11 +291,11 @@ fn overloaded(contacts: &[Contact; 2], hits: &[HertzImpact; 2]) -> Result<Option
     let overload = |i: usize| contacts[i].overload(hits[i].approach_peak());
     let overload = overload(0).max(overload(1));
     let told = format!(
-        "a contact approaches by about {overload:.1e} times what begins to yield; the law of a contact that yields was compared with finite elements up to {PROVEN_OVERLOAD} times"
+        "a contact reaches about {overload:.0} times the approach at first yield; the law of plastic contacts was compared with finite elements up to {PROVEN_OVERLOAD} times"
     );
     if overload > MOST_OVERLOAD {
         return Err(Error::Solver(format!(
-            "reduced model: {told}, and nothing is known beyond {MOST_OVERLOAD:.0e}; is `yield_strength` in the right unit?"
+            "reduced model: {told}, and it is refused beyond {MOST_OVERLOAD:.0}; is `yield_strength` in the right unit?"
         )));
     }
     Ok((overload > PROVEN_OVERLOAD).then_some(told))

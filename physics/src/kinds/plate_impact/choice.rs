@@ -355,14 +355,16 @@ impl<'a> ChoicePlan<'a> {
             (_, Some(_), _) if self.met() => {
                 let alone = self.hopeless.map_or(String::new(), |error| {
                     format!(
-                        "; Kirchhoff's plate is estimated to be off by {:.2} % with any number of modes",
+                        "; Kirchhoff's plate has an estimated error of {:.2} % with any number of modes",
                         100.0 * error
                     )
                 });
-                format!("model {model} is the cheapest whose estimated error meets the tolerance{alone}")
+                format!(
+                    "model {model} is the least expensive one whose estimated error is within the tolerance{alone}"
+                )
             }
             (_, Some(error), Some(floor)) => format!(
-                "no reduced model is estimated to meet the tolerance: model {model} comes nearest with {:.2} %, {:.2} % of which are what model C was found to be off by",
+                "no reduced model is estimated to be within the tolerance: model {model} is nearest with {:.2} %, of which {:.2} % is the error found for model C",
                 100.0 * error,
                 100.0 * floor
             ),

@@ -50,8 +50,7 @@ const BY_TOUCHES: f64 = 0.1;
 pub(super) const BY_TWICE: f64 = 2.0;
 
 /// Why it was chosen.
-pub(super) const REASON: &str =
-    "model C with its plate in closed form, which costs no mesh, is estimated to meet the tolerance";
+pub(super) const REASON: &str = "model C by plate series (no mesh) is estimated to be within the tolerance";
 
 /// Whether the plate of `setup` and its spheres under patches of the radii `patch` in m have a closed form.
 pub(super) fn holds(setup: &PlateImpact, patch: [f64; 2]) -> bool {

@@ -226,7 +226,7 @@ pub(super) fn tip_residuals(
     let tip = |body: &str, shape: &Shape, material: &Material, patch| match *shape {
         Shape::Sphere { radius } if patch >= WIDEST_PATCH * radius => Err(Error::Solver(format!(
             "model {}: the {body} contact's radius, {:.3} mm by the first look, is not below half of `{body}.radius`, {:.3} mm: \
-             it knows spheres under smaller contacts only; take model B, a slower impact or a stiffer material",
+             its sphere model is limited to smaller contacts; take model B, a lower speed or a stiffer material",
             Model::C,
             1e3 * patch,
             1e3 * WIDEST_PATCH * radius

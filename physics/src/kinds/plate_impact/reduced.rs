@@ -186,7 +186,7 @@ fn require_covered(setup: &PlateImpact, model: Option<Model>) -> Result<()> {
         return Ok(());
     }
     Err(Error::Solver(format!(
-        "`outer.offset` is {offset} m: beside the centre of the plate only models A and B take an impact, if its edge is clamped or simply supported; the reference takes all"
+        "`outer.offset` is {offset} m: off-centre impacts need model A or B and a clamped or simply supported plate; the reference takes all"
     )))
 }
 

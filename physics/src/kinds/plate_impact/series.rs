@@ -66,7 +66,7 @@ impl Impacts<'_> {
         let left = self.plastic_work(&last) / self.system.kinetic_energy();
         let warning = (!self.has_shaken_down(&last)).then(|| {
             format!(
-                "the last of {} impacts still loses {left:.1e} of its energy to yielding: the series has not shaken down (below {SHAKEN_DOWN:.0e})",
+                "the last of {} impacts still dissipates {left:.1e} of its energy plastically: shakedown (below {SHAKEN_DOWN:.0e}) is not reached",
                 impacts.len()
             )
         });
@@ -106,7 +106,7 @@ impl Impacts<'_> {
         let sampled = if options.sample_interval.is_some() { *options } else { alone };
         let mut result = self.elastic(&sampled)?;
         let loads = result.history.as_ref().and_then(ForceHistory::of);
-        let loads = loads.ok_or_else(|| Error::Internal("a history was asked for".into()))?;
+        let loads = loads.ok_or_else(|| Error::Internal("a history was requested".into()))?;
         result.history = result.history.filter(|_| options.sample_interval.is_some());
         Ok((result, loads))
     }

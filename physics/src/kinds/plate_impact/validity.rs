@@ -46,7 +46,7 @@ pub(super) fn film_warning(loss: f64, system: &System) -> Option<String> {
     let error = FILM_EXCESS * loss / system.initial_energy();
     (FILM_EXCESS * share > FILM_ERROR).then(|| {
         format!(
-            "the squeeze film takes {:.1} % of the energy, of which up to a quarter is too much, since it knows no dents of plate and inner body: the efficiency may be {error:.3} too low; compare with the reference before relying on it",
+            "the squeeze film dissipates {:.1} % of the energy, up to a quarter of that too much, since the film assumes rigid surfaces (no elastohydrodynamics): the efficiency may be {error:.3} too low; compare with the reference",
             100.0 * share
         )
     })

@@ -88,8 +88,7 @@ impl<'a> Variants<'a> {
         let setup = scene.plate_impact()?;
         if !setup.outer.is_centred() {
             return Err(Error::Usage(
-                "beside the centre of the plate and at an angle there are no parts of a model's difference"
-                    .into(),
+                "an off-centre or oblique impact has no budget of the differences".into(),
             ));
         }
         let kirchhoff = kirchhoff::modes(&setup.plate, modes[0].max(patch_modes))?;

@@ -18,7 +18,7 @@ pub(super) fn of_model(scene: &SealSeat, mesh: &SeatMesh) -> Vec<String> {
     }
     if scene.friction > 0.0 {
         doubts.push(
-            "the reduced model leaves out friction, which turns the sphere's flight; the reference has it"
+            "the reduced model omits friction, which changes the direction of the sphere; the reference includes it"
                 .to_owned(),
         );
     }
@@ -32,7 +32,7 @@ pub(super) fn of_model(scene: &SealSeat, mesh: &SeatMesh) -> Vec<String> {
     }
     if mesh.geometry_hash().is_none() {
         doubts.push(format!(
-            "mesh {} does not say which geometry it was made for (`impactcheck mesh` notes it): only its rim, contact ring and tips were checked",
+            "mesh {} has no record of its geometry (`impactcheck mesh` writes one): only its edge, contact ring and tips were checked",
             mesh.path().display()
         ));
     }
@@ -42,8 +42,8 @@ pub(super) fn of_model(scene: &SealSeat, mesh: &SeatMesh) -> Vec<String> {
 /// Doubts about the mesh where `run` has loaded it, a sentence each.
 pub(super) fn of_contacts(system: &System, run: &Integration) -> Vec<String> {
     let loaded = run.tally.force_peak.iter().zip(run.tally.reach).zip([
-        "the sphere touches nodes on the contact ring only",
-        "a tip of the actuator touches one node only",
+        "the sphere is in contact with nodes of the contact ring only",
+        "a tip of the actuator is in contact with one node only",
     ]);
     loaded
         .filter(|((force, reach), _)| **force > 0.0 && *reach <= ALONE * system.indentation)

@@ -22,7 +22,7 @@ pub(super) fn estimate(all: &Integration, half: &Integration) -> f64 {
 pub(super) fn warning(error: f64, modes: usize) -> Option<String> {
     (error > LARGEST).then(|| {
         format!(
-            "{modes} modes are few: those left out change the sphere's velocity or the force peaks by about {:.1} %; take more (--modes)",
+            "{modes} modes are few: the truncated modes change the sphere's velocity or the peak forces by about {:.1} %; take more (--modes)",
             100.0 * error
         )
     })

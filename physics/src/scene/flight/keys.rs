@@ -4,7 +4,8 @@ use crate::scene::grammar::{Bound, Field, Kind, choice, one_way, only, optional,
 use crate::scene::quantity::Dimension;
 
 /// What a table `[flight]` is for.
-pub(crate) const FLIGHT: &str = "The flight of the sphere after the impact, to its seat; absent = not asked for. Changes nothing of the impact";
+pub(crate) const FLIGHT: &str =
+    "Flight of the sphere after the impact, to its seat; absent = none. Does not change the impact";
 
 const TURN: Bound =
     Bound { low: Some((-std::f64::consts::PI, true)), high: Some((std::f64::consts::PI, true)) };
@@ -74,20 +75,20 @@ const DRAG_COEFFICIENT: Field =
 const END_TIME: Field = optional(
     "end_time",
     positive(Dimension::TIME),
-    "Time after which a flight without verdict is given up; absent = 1 s",
+    "Longest time of a flight without a result; absent = 1 s",
 );
 const SPEED_SCATTER: Field = optional(
     "speed_scatter",
     pure(SHARE),
-    "Half width of the band of the launch's speed, relative; absent = 1 %",
+    "Half width of the range of the launch's speed, relative; absent = 1 %",
 );
 const ANGLE_SCATTER: Field = optional(
     "angle_scatter",
     not_negative(Dimension::ANGLE),
-    "Half width of the band of the launch's angle; absent = 0.5 deg",
+    "Half width of the range of the launch's angle; absent = 0.5 deg",
 );
 const RESTITUTION_SCATTER: Field =
-    optional("restitution_scatter", pure(SHARE), "Half width of the band of the restitution; absent = 0.02");
+    optional("restitution_scatter", pure(SHARE), "Half width of the range of the restitution; absent = 0.02");
 
 /// Of a seal seat, whose shape is the chamber's floor.
 pub(crate) static SEAT_FLIGHT: [Field; 12] = [
@@ -179,7 +180,7 @@ pub(in crate::scene) static VIBRATION: [Field; 8] = [
             required(
                 "file",
                 Kind::Text,
-                "Table in CSV with the columns time and acceleration, beside the scene file",
+                "Table in CSV with the columns time and acceleration, in the folder of the scene file",
             ),
         ),
     ),

@@ -131,7 +131,7 @@ pub(super) fn collisions(scene: &Scene) -> Vec<Collision> {
         None => rules.push(rule(
             "vibration",
             scene.vibration.is_none(),
-            "`[vibration]` asks what shakes the sphere out of its seat, but there is no `[flight]` that says what holds it there",
+            "`[vibration]` needs a table `[flight]`, which specifies what holds the sphere in its seat",
             "add a table [flight]",
         )),
         Some(flight) => {

@@ -32,11 +32,8 @@ static PAIR: [grammar::Field; 2] = [
 ];
 
 /// The entry for correlations.
-pub(in crate::scene) static CORRELATIONS: grammar::Field = grammar::optional(
-    CORRELATED,
-    Kind::Tables(&PAIR, MOST_PAIRS),
-    "Pairs of inputs that do not scatter independently",
-);
+pub(in crate::scene) static CORRELATIONS: grammar::Field =
+    grammar::optional(CORRELATED, Kind::Tables(&PAIR, MOST_PAIRS), "Pairs of correlated inputs");
 
 /// A value of the table: under the name it has there, which dots may take apart.
 struct RawEntry<'t> {
@@ -86,7 +83,7 @@ impl Checker<'_> {
         }
         if entries.is_empty() {
             let help = format!(
-                "name a field and how it scatters, for example \"plate.thickness\" = \"1 %\"; {HELP}"
+                "name a field and its standard deviation, for example \"plate.thickness\" = \"1 %\"; {HELP}"
             );
             self.problems.add(key.span(), "[uncertainty] names no input".into(), "empty", help);
         }
@@ -105,8 +102,7 @@ impl Checker<'_> {
         let Some(nominal) = number_in(values, field) else {
             // a number that is there and wrong is told of at its own place
             if self.problems.is_empty() {
-                let message =
-                    format!("`{path}`: the scene file has no `{}` about which it could scatter", entry.field);
+                let message = format!("`{path}`: the scene file has no nominal value `{}`", entry.field);
                 let help = format!("state `{}` too", entry.field);
                 self.problems.add(entry.place.clone(), message, "no nominal value", help);
             }
@@ -118,7 +114,7 @@ impl Checker<'_> {
             || (matches!(distribution, Distribution::Lognormal(_)) && nominal <= 0.0)
         {
             let message = format!(
-                "which is no scatter about a nominal value of {nominal}{}",
+                "which is not a standard deviation about the nominal value {nominal}{}",
                 field.dimension().suffix()
             );
             let help = "give a standard deviation with its unit; a lognormal number is positive";
@@ -127,15 +123,15 @@ impl Checker<'_> {
         let [low, high] = input.range();
         if !(low..=high).contains(&nominal) {
             let message =
-                format!("which leaves out the nominal value {nominal}{}", field.dimension().suffix());
-            let help = "the bounds have to lie on either side of what the scene file says";
+                format!("which does not contain the nominal value {nominal}{}", field.dimension().suffix());
+            let help = "the bounds must enclose the value in the scene file";
             return self.fault(&place, entry.value, &message, "not about the nominal value", help.to_owned());
         }
         for end in [low, high] {
             if let Err(rejected) = field.check(end) {
                 let message = format!("which reaches too far: {rejected}");
                 let help = "a normal number is taken to reach five standard deviations from its mean, a lognormal one as far by its \
-                    logarithm: give less scatter, { lognormal = ... } for what is positive, or { uniform = [...] } with bounds";
+                    logarithm: specify a smaller deviation, { lognormal = ... } for what is positive, or { uniform = [...] } with bounds";
                 return self.fault(&place, entry.value, &message, "reaches too far", help.to_owned());
             }
         }
@@ -147,7 +143,9 @@ impl Checker<'_> {
         let name = &entry.field;
         let (message, help) = match fields.iter().find(|field| field.path() == name) {
             Some(field) if !field.is_count() => return Some(field),
-            Some(_) => ("takes whole numbers, which have no scatter".to_owned(), "leave it out".to_owned()),
+            Some(_) => {
+                ("takes whole numbers, which cannot be uncertain".to_owned(), "leave it out".to_owned())
+            }
             None if without_effect(values, name).is_some() => {
                 let why = without_effect(values, name).unwrap_or_default();
                 (format!("changes no reduced model: {why}"), "leave it out".to_owned())
@@ -180,7 +178,7 @@ impl Checker<'_> {
             DeValue::Table(table) => table,
             found => {
                 let message =
-                    format!("but it has to be a percentage or a distribution; found: {}", found.type_str());
+                    format!("but it must be a percentage or a distribution; found: {}", found.type_str());
                 return self.fault(place, value, &message, "not a distribution", HELP.to_owned());
             }
         };
@@ -193,7 +191,7 @@ impl Checker<'_> {
                 let unknown = table.keys().map(|key| key.get_ref().as_ref());
                 let meant: String =
                     unknown.map(|key| did_you_mean(key, DISTRIBUTIONS.map(|(name, _)| name))).collect();
-                let message = "but it has to be one distribution";
+                let message = "but it must be one distribution";
                 self.fault(place, value, message, "not a distribution", format!("{meant}{HELP}"))
             }
         }
@@ -237,7 +235,7 @@ impl Checker<'_> {
             self.fault::<()>(
                 &place,
                 entry.value,
-                "but it has to be a list of tables",
+                "but it must be a list of tables",
                 "wrong type",
                 help.to_owned(),
             );

@@ -1,20 +1,14 @@
 //! How a plate impact is shown.
 
-mod animation;
 mod picture;
-
-pub use animation::{Animation, film};
 
 use super::{Drawing, Presentation};
 use crate::reference::Stored;
 use crate::report::attachments::instant_of_peak;
-use crate::report::figure_geometry::PanelOf;
-use crate::report::section::Section;
+use crate::report::figure::geometry::PanelOf;
+use crate::report::page::section::{self, Section};
 use crate::report::summary_column::SummaryColumn;
-use crate::report::{
-    Attachments, SceneReport, Theme, animation_section, budget_section, dents_section, efficiency_figure,
-    flight_section, impacts_section, measured_figure, measured_section, mesh_section,
-};
+use crate::report::{Attachments, SceneReport, Theme, efficiency_figure, measured_figure};
 use crate::scene::Scene;
 use maud::{Markup, html};
 
@@ -48,11 +42,11 @@ const PANELS: [PanelOf; 3] = [
 impl Presentation for Plate {
     fn columns(&self) -> &'static [SummaryColumn] {
         const COLUMNS: [SummaryColumn; 5] = [
-            SummaryColumn::new("efficiency", "efficiency", "efficiency"),
-            SummaryColumn::new("outer peak", "force peaks", "outer_force_peak"),
-            SummaryColumn::new("inner peak", "force peaks", "inner_force_peak"),
-            SummaryColumn::new("outer end", "ends of contact", "outer_contact_end"),
-            SummaryColumn::new("inner end", "ends of contact", "inner_contact_end"),
+            SummaryColumn::new("efficiency", "", "efficiency", "efficiency"),
+            SummaryColumn::new("peak force", "outer", "peak force at the outer contact", "outer_force_peak"),
+            SummaryColumn::new("peak force", "inner", "peak force at the inner contact", "inner_force_peak"),
+            SummaryColumn::new("contact ends", "outer", "end of the outer contact", "outer_contact_end"),
+            SummaryColumn::new("contact ends", "inner", "end of the inner contact", "inner_contact_end"),
         ];
         &COLUMNS
     }
@@ -82,9 +76,9 @@ impl Presentation for Plate {
         let efficiencies = efficiency_figure(report);
         let measured = measured.map(|svg| drawing("-measured", None, svg));
         let efficiencies = efficiencies.map(|svg| drawing("-efficiencies", None, svg));
-        let impacts = impacts_section::impacts_figure(report)
+        let impacts = section::impacts::impacts_figure(report)
             .map(|svg| drawing("-impacts", Some("Efficiency over the number of the impact"), svg));
-        let dents = dents_section::dents_figure(report).map(|svg| drawing("-dents", None, svg));
+        let dents = section::dents::dents_figure(report).map(|svg| drawing("-dents", None, svg));
         [Some(Drawing::curves(report)), impacts, dents, measured, efficiencies]
             .into_iter()
             .flatten()
@@ -100,13 +94,12 @@ impl Presentation for Plate {
     }
 
     fn sections(&self, report: &SceneReport) -> Vec<Section> {
-        let budget = budget_section::budget_html(&report.comparison);
-        let measured = measured_section::measured_html(report);
-        let dents = dents_section::dents_html(report).unwrap_or_else(|error| html! { p { (error) } });
+        let budget = section::budget::budget_html(&report.comparison);
+        let measured = section::measured::measured_html(report);
+        let dents = section::dents::dents_html(report).unwrap_or_else(|error| html! { p { (error) } });
         vec![
-            Section::new("movement", "The impact moving", animation_section::animation_html(report)),
-            Section::new("impacts", "Impacts in series", impacts_section::impacts_html(report)),
-            Section::new("landing", "Landing", flight_section::flights_html(report)),
+            Section::new("impacts", "Impacts in series", section::impacts::impacts_html(report)),
+            Section::new("landing", "Landing", section::flight::flights_html(report)),
             Section::new("dents", "Dents", dents),
             Section::new("budget", "Discrepancy budget", budget),
             Section::new("measurement", "Measurement", measured),
@@ -114,6 +107,6 @@ impl Presentation for Plate {
     }
 
     fn mesh(&self, report: &SceneReport) -> Markup {
-        mesh_section::mesh_html(report).unwrap_or_else(|error| html! { p { (error) } })
+        section::mesh::mesh_html(report).unwrap_or_else(|error| html! { p { (error) } })
     }
 }

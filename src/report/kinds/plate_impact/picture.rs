@@ -2,8 +2,8 @@
 
 use crate::format::{measure, short};
 use crate::kinds::plate_impact::PlateImpact;
-use crate::report::figure_geometry::x2;
-use crate::report::scene_drawing::{DrawingScale, materials};
+use crate::plot::svg::x2;
+use crate::report::figure::scene_drawing::{DrawingScale, materials};
 use crate::scene::{Edge, Material, Shape};
 use maud::{Markup, html};
 
@@ -117,9 +117,9 @@ pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
     let own = if inner.speed == 0.0 { String::new() } else { format!(", {}", measure(inner.speed, "m/s")) };
     let aside = match (outer.offset, outer.angle) {
         (0.0, 0.0) => String::new(),
-        (offset, 0.0) => format!(", {} beside the centre", length(offset)),
+        (offset, 0.0) => format!(", {} off-centre", length(offset)),
         (0.0, angle) => format!(", at {}", measure(angle, "rad")),
-        (offset, angle) => format!(", {} beside the centre, at {}", length(offset), measure(angle, "rad")),
+        (offset, angle) => format!(", {} off-centre, at {}", length(offset), measure(angle, "rad")),
     };
     let mut told = vec![
         (

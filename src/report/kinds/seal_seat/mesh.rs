@@ -1,11 +1,11 @@
 //! Mesh and stress of a seal seat's reference in the plane of symmetry.
 
 use crate::format::{prefixed, with_unit};
+use crate::plot::colours::cividis;
+use crate::plot::frame::{Bounds, ColourScale, Frame, Place};
+use crate::plot::svg::x2;
 use crate::reference::MeshSection;
 use crate::report::SceneReport;
-use crate::report::field_raster::cividis;
-use crate::report::figure_geometry::x2;
-use crate::report::section_frame::{Bounds, ColourScale, Frame, Place};
 use maud::{Markup, html};
 
 /// Colours of stresses between 0 and the end of the scale.

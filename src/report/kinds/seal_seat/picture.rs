@@ -2,9 +2,9 @@
 
 use crate::format::{measure, short};
 use crate::kinds::seal_seat::{SealSeat, SphereBody};
+use crate::plot::svg::x2;
 use crate::report::Theme;
-use crate::report::figure_geometry::x2;
-use crate::report::scene_drawing::{DrawingScale, materials};
+use crate::report::figure::scene_drawing::{DrawingScale, materials};
 use crate::report::summary_column::degrees;
 use maud::{Markup, PreEscaped, html};
 

@@ -1,7 +1,7 @@
 //! How an impact on a mass on a spring is shown.
 
 use super::Presentation;
-use crate::report::figure_geometry::PanelOf;
+use crate::report::figure::geometry::PanelOf;
 use crate::report::summary_column::SummaryColumn;
 
 pub(super) struct Spring;

@@ -47,7 +47,7 @@ impl WetStepper<'_> {
         Err(beyond_model(
             self.time + h,
             &format!(
-                "at r = {:.2e} m they overlap by {:.2e} m beside the contact on the axis",
+                "at r = {:.2e} m they overlap by {:.2e} m outside the contact on the axis",
                 overlap.radius, overlap.depth
             ),
         ))
@@ -57,6 +57,6 @@ impl WetStepper<'_> {
 /// At the `time` in s, since `what` is so.
 fn beyond_model(time: f64, what: &str) -> Error {
     Error::BeyondModel(format!(
-        "reduced model: at t = {time:.6e} s the plate bends around the inner body: {what}; the model knows contact on the axis only: take a smaller tip radius, a stiffer plate, or the scene without `squeeze_film`"
+        "reduced model: at t = {time:.6e} s the plate bends around the inner body: {what}; the model assumes contact on the axis only: take a smaller tip radius, a stiffer plate, or remove `squeeze_film`"
     ))
 }

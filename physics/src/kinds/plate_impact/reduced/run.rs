@@ -158,7 +158,7 @@ impl Reduced {
         let options = Options { sample_interval, samples_between, converged, ..self.options(tolerance) };
         let record = |options: &Options| -> Result<_> {
             let (result, _) = self.impacts().one(options, memory.as_ref())?;
-            result.history.ok_or_else(|| Error::Internal("a history was asked for".into()))
+            result.history.ok_or_else(|| Error::Internal("a history was requested".into()))
         };
         let mut history = record(&options)?;
         if options.end_time.is_none() && history.time.last().is_some_and(|last| *last < end) {
@@ -193,7 +193,7 @@ impl Reduced {
         warnings.extend(self.warnings.iter().cloned());
         warnings.extend(truncation.warning);
         if setup.friction > 0.0 {
-            warnings.push("friction is left out: Hertz's contact is smooth; the reference has it".into());
+            warnings.push("friction is omitted by the reduced models; the reference includes it".into());
         }
         warnings.extend(film_warning(result.losses.squeeze_film, system));
         warnings.extend(unsure.map(|error| {
@@ -204,7 +204,7 @@ impl Reduced {
         if let (Some(memory), true) = (&self.memory, even_steps) {
             warnings.extend(memory.warnings.iter().cloned());
             warnings.extend(result.error_estimate.filter(|error| *error > memory::CHANGE / 3.0).map(|error| {
-                format!("velocities and force peaks are uncertain by {error:.0e}: neither shorter steps nor what the plate's bending changes have settled")
+                format!("velocities and peak forces are uncertain by {error:.0e}: step length and bending of the plate have not converged")
             }));
         }
         if let (Shape::Bender(bender), Some(drive)) = (&setup.outer.shape, system.drive) {
@@ -221,9 +221,9 @@ impl Reduced {
                 continue;
             }
             warnings.push(match contact.force_peak > 0.0 {
-                false => format!("the {body} body and the plate never touch"),
+                false => format!("the {body} body and the plate are never in contact"),
                 true => format!(
-                    "the {body} body and the plate touch with an impulse of {:.1e} N s, below {NEGLIGIBLE:.0e} of the outer body's momentum: it does not count as a contact",
+                    "the {body} body and the plate are in contact with an impulse of {:.1e} N s, below {NEGLIGIBLE:.0e} of the outer body's momentum: it does not count as a contact",
                     contact.impulse
                 ),
             });
@@ -233,7 +233,7 @@ impl Reduced {
         warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if self.scene.plate_impact()?.outer.angle != 0.0 {
             warnings.push(
-                "motion along the plate is left out: the velocity along its normal alone counts; the reference has both".into(),
+                "motion along the plate is omitted by the reduced models; the reference includes it".into(),
             );
         }
         let values = self.of_all_energy(values(system, result));

@@ -301,7 +301,7 @@ static INNER: [Field; 7] = [
     optional(
         "speed",
         Kind::Quantity(Dimension::SPEED, Bound::ANY),
-        "Speed towards the plate at the outer body's first touch; negative = away from it, absent = 0",
+        "Speed towards the plate at the outer body's first contact; negative = away from it, absent = 0",
     ),
 ];
 
@@ -360,7 +360,7 @@ static REFERENCE: [Field; 4] = [
     optional(
         "geometry",
         Kind::Choice(&[choice("axisymmetric"), choice("solid")]),
-        "Geometry of the elements; absent = axisymmetric, for an impact beside the centre or at an angle solid",
+        "Geometry of the elements; absent = axisymmetric, for an off-centre or oblique impact solid",
     ),
     optional(
         "elements_per_contact_radius",

@@ -122,7 +122,7 @@ fn pull(outer: &Node) -> Result<Inductance> {
         if stop <= start {
             return Err(refused(
                 &format!(
-                    "`outer.stop_inductance` is {stop} H, but it has to be more than `outer.inductance`, {start} H"
+                    "`outer.stop_inductance` is {stop} H, but it must be more than `outer.inductance`, {start} H"
                 ),
                 "the plunger is pulled to where the inductance is larger",
             ));
@@ -142,7 +142,7 @@ fn pull(outer: &Node) -> Result<Inductance> {
         ))
     };
     if !inductances.is_empty() && !forces.is_empty() {
-        return refuse("has inductances and forces, but it has to be of one kind".into());
+        return refuse("has inductances and forces, but it must be of one kind".into());
     }
     let points = if forces.is_empty() { &inductances } else { &forces };
     if points.len() < 2 || points[0][0] != 0.0 || points[points.len() - 1][0] < travel {
@@ -212,7 +212,7 @@ fn stack(outer: &Node) -> Result<Stack> {
     if stack.gap >= most {
         return Err(refused(
             &format!(
-                "`outer.gap` is {} m, but the stack's tip swings out by less than twice `outer.stroke`, {most:.4e} m: it never touches the plate",
+                "`outer.gap` is {} m, but the stack's tip swings out by less than twice `outer.stroke`, {most:.4e} m: it never reaches the plate",
                 stack.gap
             ),
             "bring the stack nearer, or take one with a larger stroke",
@@ -310,7 +310,7 @@ fn fluid(fluid: &Node, plate: &Plate) -> Result<Fluid> {
     {
         return Err(refused(
             &format!(
-                "`fluid.infinite_shear_viscosity` is {} Pa*s, but it has to be at most `fluid.viscosity`, {} Pa*s",
+                "`fluid.infinite_shear_viscosity` is {} Pa*s, but it must be at most `fluid.viscosity`, {} Pa*s",
                 law.infinite_shear_viscosity,
                 fluid.number("viscosity")?
             ),

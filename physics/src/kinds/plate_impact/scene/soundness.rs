@@ -39,7 +39,7 @@ impl Bodies for PlateImpact {
                 fields: vec!["plate.thickness", "plate.radius"],
                 holds: (least..=most).contains(&ratio),
                 message: format!(
-                    "the plate is no plate: `plate.thickness` is {ratio:.3e} times `plate.radius`, but it has to be {least:e} to {most} times"
+                    "the plate is no plate: `plate.thickness` is {ratio:.3e} times `plate.radius`, but it must be {least:e} to {most} times"
                 ),
                 help: "is one of them in the wrong unit?",
             },
@@ -47,7 +47,7 @@ impl Bodies for PlateImpact {
                 fields: vec!["outer.offset", "plate.radius"],
                 holds: self.outer.offset < plate.radius,
                 message: format!(
-                    "`outer.offset` is {} m, but it has to be less than `plate.radius`, {} m",
+                    "`outer.offset` is {} m, but it must be less than `plate.radius`, {} m",
                     self.outer.offset, plate.radius
                 ),
                 help: "it is the distance of the point of impact from the centre of the plate",
@@ -55,51 +55,51 @@ impl Bodies for PlateImpact {
             Rule {
                 fields: vec!["outer.offset", "outer.angle"],
                 holds: self.outer.is_centred() || (elastic && dry),
-                message: "an impact beside the centre or at an angle is covered between elastic bodies, dry, on an undamped plate, once".into(),
-                help: "leave out `outer.offset` and `outer.angle`, or fluid, damping, `hardening`, `relaxation`, `loss_factor` and series",
+                message: "an off-centre or oblique impact needs elastic bodies, no fluid, an undamped plate and one impact".into(),
+                help: "remove `outer.offset` and `outer.angle`, or fluid, damping, `hardening`, `relaxation`, `loss_factor` and series",
             },
             Rule {
                 fields: vec!["friction"],
                 holds: self.outer.is_centred() || self.friction == 0.0 || spheres,
-                message: "`friction` beside the centre or at an angle turns the bodies: both have to be spheres, of other bodies the moment of inertia is not known".into(),
-                help: "take spheres, or leave out `friction`",
+                message: "`friction` in an off-centre or oblique impact makes the bodies rotate: both must be spheres, since the moment of inertia of other bodies is not known".into(),
+                help: "use spheres, or remove `friction`",
             },
             Rule {
                 fields: vec!["fluid"],
                 holds: elastic || self.fluid.is_none(),
-                message: "`fluid`: a material that yields or relaxes in a fluid is not covered".into(),
+                message: "`fluid`: a plastic or viscoelastic material in a fluid is not supported".into(),
                 help: "leave the fluid out, or `hardening`, `relaxation` and `loss_factor` of the materials",
             },
             Rule {
                 fields: vec!["outer.kind"],
                 holds: elastic || !self.outer.shape.is_held(),
                 message:
-                    "`outer.kind` is \"bender\" or \"stack\": with a material that yields or relaxes it is not covered"
+                    "`outer.kind` is \"bender\" or \"stack\": it is not supported with a plastic or viscoelastic material"
                         .into(),
-                help: "take a sphere or a compact body, or leave out `hardening`, `relaxation` and `loss_factor` of the materials",
+                help: "use a sphere or a compact body, or remove `hardening`, `relaxation` and `loss_factor` of the materials",
             },
             Rule {
                 fields: vec!["outer.kind"],
                 holds: dry || !matches!(self.outer.shape, Shape::Stack(_)),
                 message: "`outer.kind` is \"stack\": in a fluid, on a damped plate or in series it is not covered".into(),
-                help: "leave out `fluid`, `plate.damping_ratio` and `series`, or take another outer body",
+                help: "remove `fluid`, `plate.damping_ratio` and `series`, or use another outer body",
             },
             Rule {
                 fields: vec!["outer.drive.resistance"],
                 holds: resistance <= striking,
                 message: format!(
-                    "`outer.drive.resistance` is {resistance} Ohm, but it has to be at most {striking:.1e} Ohm: the stack charges so slowly that its tip presses on the plate and does not strike it"
+                    "`outer.drive.resistance` is {resistance} Ohm, but it must be at most {striking:.1e} Ohm: the stack charges so slowly that its tip presses on the plate and does not strike it"
                 ),
-                help: "take a smaller resistance, or leave out `outer.drive` for an ideal source",
+                help: "use a smaller resistance, or remove `outer.drive` for an ideal source",
             },
             Rule {
                 fields: vec!["plate.material"],
                 holds: pair(&self.outer.material) && pair(&self.inner.material),
                 message: format!(
-                    "a contact of `plate.material` `{}` joins a material that yields with one that relaxes, which is not covered",
+                    "a contact of `plate.material` `{}` joins a plastic and a viscoelastic material, which is not supported",
                     plate.material.name
                 ),
-                help: "leave out `hardening` of the one or the relaxation of the other",
+                help: "remove `hardening` of the one or the relaxation of the other",
             },
         ])
     }
@@ -131,7 +131,7 @@ impl Bodies for PlateImpact {
         found.extend(lengths.into_iter().filter_map(|(name, value)| outside(name, value, LENGTH, "m")));
         if self.series.is_some() && self.materials().iter().all(|material| material.plasticity().is_none()) {
             found.push(
-                "series: no material yields, so that the first impact is the last; give one `yield_strength` and `hardening`".into(),
+                "series: no material yields, so that all impacts are equal; specify `yield_strength` and `hardening` of one".into(),
             );
         }
         if plate.thickness > 4.0 * plate.radius {

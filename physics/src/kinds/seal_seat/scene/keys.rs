@@ -94,7 +94,7 @@ static INTENDED: [Field; 1] = [required(
 )];
 
 static REDUCED: [Field; 2] = [
-    optional("model", Kind::Choice(&[choice("C")]), "The model to run: only C knows this kind"),
+    optional("model", Kind::Choice(&[choice("C")]), "Model to run: this kind has model C only"),
     optional("modes", Kind::Count(1, 1024), "Number of modes of the seat"),
 ];
 

@@ -37,7 +37,7 @@ impl Bodies for SealSeat {
                 fields: vec!["sphere.material"],
                 holds: sphere.is_elastic(),
                 message: format!(
-                    "`sphere.material` is `{}`, which yields or relaxes, but the sphere in a seal seat has to be elastic",
+                    "`sphere.material` is `{}`, which is plastic or viscoelastic, but the sphere in a seal seat must be elastic",
                     sphere.name
                 ),
                 help: "leave `hardening`, `relaxation` and `loss_factor` out of the material",
@@ -69,7 +69,7 @@ fn island(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.island_height", "seat.membrane_thickness"],
             holds: seat.island_height > seat.membrane_thickness,
             message: format!(
-                "the island does not rise above the membrane: `seat.island_height` is {}, but it has to be greater than `seat.membrane_thickness`, {}",
+                "the island does not rise above the membrane: `seat.island_height` is {}, but it must be greater than `seat.membrane_thickness`, {}",
                 mm(seat.island_height),
                 mm(seat.membrane_thickness)
             ),
@@ -79,7 +79,7 @@ fn island(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.island_length", "seat.island_width", "seat.membrane_radius"],
             holds: corner < seat.membrane_radius,
             message: format!(
-                "the island reaches over the rim of the membrane: its corners (`seat.island_length` {}, `seat.island_width` {}) lie at a radius of {}, but it has to be less than `seat.membrane_radius`, {}",
+                "the island reaches over the rim of the membrane: its corners (`seat.island_length` {}, `seat.island_width` {}) lie at a radius of {}, but it must be less than `seat.membrane_radius`, {}",
                 mm(seat.island_length),
                 mm(seat.island_width),
                 mm(corner),
@@ -93,7 +93,7 @@ fn island(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.notch_floor", "seat.membrane_thickness"],
             holds: notch.floor >= seat.membrane_thickness,
             message: format!(
-                "the notch cuts into the membrane: `seat.notch_floor` is {}, but it has to be at least `seat.membrane_thickness`, {}",
+                "the notch cuts into the membrane: `seat.notch_floor` is {}, but it must be at least `seat.membrane_thickness`, {}",
                 mm(notch.floor),
                 mm(seat.membrane_thickness)
             ),
@@ -103,7 +103,7 @@ fn island(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.notch_floor", "seat.island_height"],
             holds: notch.floor < seat.island_height,
             message: format!(
-                "the notch lies above the island: `seat.notch_floor` is {}, but it has to be less than `seat.island_height`, {}",
+                "the notch lies above the island: `seat.notch_floor` is {}, but it must be less than `seat.island_height`, {}",
                 mm(notch.floor),
                 mm(seat.island_height)
             ),
@@ -113,7 +113,7 @@ fn island(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.notch_width", "seat.island_length"],
             holds: notch.width < seat.island_length,
             message: format!(
-                "the notch is wider than the island: `seat.notch_width` is {}, but it has to be less than `seat.island_length`, {}",
+                "the notch is wider than the island: `seat.notch_width` is {}, but it must be less than `seat.island_length`, {}",
                 mm(notch.width),
                 mm(seat.island_length)
             ),
@@ -133,7 +133,7 @@ fn cone_and_bore(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.aperture_angle", "seat.tilt"],
             holds: half + seat.tilt < FRAC_PI_2,
             message: format!(
-                "the cones of the two seats cut away the web between them: half of `seat.aperture_angle` and `seat.tilt` are {:.2} deg together, but it has to be less than 90 deg",
+                "the cones of the two seats cut away the web between them: half of `seat.aperture_angle` and `seat.tilt` are {:.2} deg together, but it must be less than 90 deg",
                 (half + seat.tilt).to_degrees()
             ),
             help: "make the cones narrower, or tilt the seats less",
@@ -142,7 +142,7 @@ fn cone_and_bore(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.bore_radius", "seat.aperture_angle"],
             holds: seat.bore_radius < ring.radius,
             message: format!(
-                "the bore cuts away the contact ring: `seat.bore_radius` is {}, but it has to be less than the radius of the ring, {} (sphere radius times the cosine of half the aperture angle)",
+                "the bore cuts away the contact ring: `seat.bore_radius` is {}, but it must be less than the radius of the ring, {} (sphere radius times the cosine of half the aperture angle)",
                 mm(seat.bore_radius),
                 mm(ring.radius)
             ),
@@ -152,7 +152,7 @@ fn cone_and_bore(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.bore_depth", "sphere.radius"],
             holds: seat.bore_depth > r,
             message: format!(
-                "the sphere stands on the floor of the bore instead of the contact ring: `seat.bore_depth` is {}, but it has to be greater than `sphere.radius`, {}",
+                "the sphere rests on the floor of the bore instead of the contact ring: `seat.bore_depth` is {}, but it must be greater than `sphere.radius`, {}",
                 mm(seat.bore_depth),
                 mm(r)
             ),
@@ -162,7 +162,7 @@ fn cone_and_bore(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.bore_depth", "seat.seated_height"],
             holds: floor >= wall,
             message: format!(
-                "the bore breaks through the underside: the lowest edge of its floor (`seat.bore_depth` {} below the centre at `seat.seated_height` {}) lies at z = {}, but it has to be at least {} (2 % of the island's height)",
+                "the bore breaks through the underside: the lowest edge of its floor (`seat.bore_depth` {} below the centre at `seat.seated_height` {}) lies at z = {}, but it must be at least {} (2 % of the island's height)",
                 mm(seat.bore_depth),
                 mm(seat.seated_height),
                 mm(floor),
@@ -183,7 +183,7 @@ fn ring_and_walls(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.seated_height", "seat.island_height"],
             holds: outer[2] <= seat.island_height - wall,
             message: format!(
-                "the contact ring lies above the island (`seat.seated_height` is {}): its highest point is at z = {}, but it has to be at most {} (`seat.island_height` {} less a wall of 2 %)",
+                "the contact ring lies above the island (`seat.seated_height` is {}): its highest point is at z = {}, but it must be at most {} (`seat.island_height` {} less a wall of 2 %)",
                 mm(seat.seated_height),
                 mm(outer[2]),
                 mm(seat.island_height - wall),
@@ -195,7 +195,7 @@ fn ring_and_walls(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.island_width", "sphere.radius"],
             holds: ring.radius <= 0.5 * seat.island_width - wall,
             message: format!(
-                "the contact ring reaches over the side of the island: its radius is {}, but it has to be at most {} (half of `seat.island_width` less a wall of 2 % of the height)",
+                "the contact ring reaches over the side of the island: its radius is {}, but it must be at most {} (half of `seat.island_width` less a wall of 2 % of the height)",
                 mm(ring.radius),
                 mm(0.5 * seat.island_width - wall)
             ),
@@ -205,7 +205,7 @@ fn ring_and_walls(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.island_length", "seat.seat_distance"],
             holds: -outer[0] <= 0.5 * seat.island_length - wall,
             message: format!(
-                "the contact ring reaches over the end of the island: its outermost point is at x = {}, but it has to be at least {} (half of `seat.island_length` less a wall of 2 % of the height)",
+                "the contact ring reaches over the end of the island: its outermost point is at x = {}, but it must be at least {} (half of `seat.island_length` less a wall of 2 % of the height)",
                 mm(outer[0]),
                 mm(wall - 0.5 * seat.island_length)
             ),
@@ -215,7 +215,7 @@ fn ring_and_walls(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.seat_distance", "seat.tilt"],
             holds: inner[0] <= -0.5 * wall,
             message: format!(
-                "the contact rings of the two seats overlap (`seat.seat_distance` is {}): the innermost point of the left one is at x = {}, but it has to be at most {} (half a wall of 2 % of the height)",
+                "the contact rings of the two seats overlap (`seat.seat_distance` is {}): the innermost point of the left one is at x = {}, but it must be at most {} (half a wall of 2 % of the height)",
                 mm(seat.seat_distance),
                 mm(inner[0]),
                 mm(-0.5 * wall)
@@ -230,7 +230,7 @@ fn ring_and_walls(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["seat.notch_width", "seat.seat_distance"],
             holds: inner[0] <= -0.5 * notch.width - wall,
             message: format!(
-                "the notch cuts the contact ring: the ring's innermost point is at x = {}, but it has to be at most {} (half of `seat.notch_width` and a wall of 2 % of the height)",
+                "the notch cuts the contact ring: the ring's innermost point is at x = {}, but it must be at most {} (half of `seat.notch_width` and a wall of 2 % of the height)",
                 mm(inner[0]),
                 mm(-0.5 * notch.width - wall)
             ),
@@ -249,7 +249,7 @@ fn tips(setup: &SealSeat) -> Vec<Collision> {
         fields: vec!["actuator.tip_radius", "actuator.speed"],
         holds: actuator.tip_radius >= least,
         message: format!(
-            "the tips are too sharp: at `actuator.speed` {} m/s a tip goes deeper into the seat's material than its radius, `actuator.tip_radius` {}, which has to be at least {}",
+            "the tips are too narrow: at `actuator.speed` {} m/s a tip goes deeper into the seat's material than its radius, `actuator.tip_radius` {}, which has to be at least {}",
             actuator.speed,
             mm(actuator.tip_radius),
             mm(least)
@@ -261,7 +261,7 @@ fn tips(setup: &SealSeat) -> Vec<Collision> {
             fields: vec!["actuator.tip_positions", "seat.membrane_radius"],
             holds: x.abs() < radius,
             message: format!(
-                "a tip of the actuator strikes beyond the membrane: `actuator.tip_positions` has {}, but it has to be less than `seat.membrane_radius`, {}, on either side",
+                "a tip of the actuator strikes beyond the membrane: `actuator.tip_positions` has {}, but it must be less than `seat.membrane_radius`, {}, on either side",
                 mm(*x),
                 mm(radius)
             ),

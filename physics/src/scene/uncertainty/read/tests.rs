@@ -117,7 +117,7 @@ fn a_distribution_that_reaches_out_of_bounds_is_refused() {
     for (table, part) in [
         (
             "\"plate.thickness\" = \"25 %\"",
-            "reaches too far: `plate.thickness` is -0.0005 m, but it has to be greater than 0 m",
+            "reaches too far: `plate.thickness` is -0.0005 m, but it must be greater than 0 m",
         ),
         (
             "\"plate.thickness\" = { uniform = [\"-1 um\", \"3 mm\"] }",

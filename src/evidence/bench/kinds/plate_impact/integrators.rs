@@ -145,7 +145,7 @@ fn ask(mut command: Command, problem: &serde_json::Value) -> std::result::Result
     let output = child.wait_with_output().map_err(|e| e.to_string())?;
     if !output.status.success() {
         let log = String::from_utf8_lossy(&output.stderr);
-        return Err(log.lines().last().unwrap_or("it says nothing").to_owned());
+        return Err(log.lines().last().unwrap_or("it printed nothing").to_owned());
     }
     written.map_err(|e| e.to_string())?;
     let text = String::from_utf8_lossy(&output.stdout);

@@ -165,7 +165,7 @@ fn output(mut command: Command) -> Result<(serde_json::Value, f64)> {
     let log = String::from_utf8_lossy(&output.stderr);
     let failed = |what: &str| Error::Internal(format!("this program ended with {}: {what}", output.status));
     if !output.status.success() {
-        return Err(failed(log.lines().last().unwrap_or("it says nothing")));
+        return Err(failed(log.lines().last().unwrap_or("it printed nothing")));
     }
     let document = serde_json::from_slice(&output.stdout).map_err(|e| failed(&e.to_string()))?;
     Ok((document, seconds))

@@ -2,7 +2,7 @@
 
 use super::{TOLERANCES, number};
 use crate::evidence::study::{Cell, Study};
-use crate::report::colours::{MODELS, hex};
+use crate::plot::colours::{MODELS, hex};
 use maud::{Markup, html};
 
 const PANEL: f64 = 330.0;
@@ -28,7 +28,7 @@ pub fn figure(study: &Study) -> String {
                 text x=(80.0 + 110.0 * k as f64) y=(height - 10.0) fill="#1a1a1a" { "model " (model) }
             }
             circle cx="400" cy=(height - 14.0) r="4" fill="none" stroke="#1a1a1a" {}
-            text x="410" y=(height - 10.0) fill="#1a1a1a" { "no promise made" }
+            text x="410" y=(height - 10.0) fill="#1a1a1a" { "no accuracy stated" }
         }
     }
     .into_string()

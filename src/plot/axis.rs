@@ -1,0 +1,180 @@
+//! Axes of charts: a range, linear or logarithmic, its marks, and the frame that two of them make.
+
+use crate::format::{short, with_minus};
+use crate::plot::polyline::Point;
+use crate::plot::svg::x2;
+use crate::plot::ticks::{tick_label, ticks};
+use maud::{Markup, html};
+
+/// A range of values on an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PlotAxis {
+    low: f64,
+    high: f64,
+    logarithmic: bool,
+}
+
+impl PlotAxis {
+    /// From the lowest to the highest of `values`, apart; logarithmic only if all are positive.
+    pub(crate) fn over(values: impl Iterator<Item = f64>, logarithmic: bool) -> Self {
+        let (low, high) = values
+            .filter(|v| v.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) = match (low <= high, high - low > 0.0) {
+            (false, _) => (0.0, 1.0),
+            (true, false) => {
+                (low - 0.5 * low.abs().clamp(1e-9, 1.0), high + 0.5 * high.abs().clamp(1e-9, 1.0))
+            }
+            _ => (low, high),
+        };
+        PlotAxis { low, high, logarithmic: logarithmic && low > 0.0 }
+    }
+
+    /// With room of a `share` of its length at both ends.
+    pub(crate) fn widened(self, share: f64) -> Self {
+        let (low, high) = (self.measure(self.low), self.measure(self.high));
+        let room = share * (high - low);
+        PlotAxis { low: self.value(low - room), high: self.value(high + room), ..self }
+    }
+
+    /// Linear, with room at both ends; from zero if it begins near zero.
+    pub(crate) fn of_quantity(self) -> Self {
+        let near_zero = self.low >= 0.0 && self.low < 0.3 * self.high;
+        let wide = self.widened(0.04);
+        if near_zero { PlotAxis { low: 0.0, ..wide } } else { wide }
+    }
+
+    /// Where `value` is, from 0 to 1.
+    pub(crate) fn place(&self, value: f64) -> f64 {
+        let (low, high) = (self.measure(self.low), self.measure(self.high));
+        (self.measure(value) - low) / (high - low)
+    }
+
+    /// Middle between two values.
+    pub(crate) fn between(&self, a: f64, b: f64) -> f64 {
+        self.value(0.5 * (self.measure(a) + self.measure(b)))
+    }
+
+    /// Round numbers, about `wanted` of them.
+    pub(crate) fn marks(&self, wanted: usize) -> Vec<f64> {
+        let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
+        let powers = |multiples: &[f64]| -> Vec<f64> {
+            let all = decades.clone().flat_map(|k| multiples.iter().map(move |m| m * 10_f64.powi(k)));
+            all.filter(|v| (self.low..=self.high).contains(v)).collect()
+        };
+        let rounded = |marks: &Vec<f64>| (3..=wanted).contains(&marks.len());
+        let logarithmic = self.logarithmic.then(|| [powers(&[1.0, 2.0, 5.0]), powers(&[1.0])]);
+        let chosen = logarithmic.into_iter().flatten().find(rounded);
+        chosen.unwrap_or_else(|| ticks(self.low, self.high, wanted))
+    }
+
+    /// The number at a mark.
+    pub(crate) fn label(&self, mark: f64, marks: &[f64]) -> String {
+        if self.logarithmic { with_minus(&short(mark)) } else { tick_label(mark, marks) }
+    }
+
+    /// Where it begins and ends.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
+    fn measure(&self, value: f64) -> f64 {
+        if self.logarithmic { value.log10() } else { value }
+    }
+
+    fn value(&self, measure: f64) -> f64 {
+        if self.logarithmic { 10_f64.powf(measure) } else { measure }
+    }
+}
+
+/// Two axes in a drawing: left, top, width and height in px.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Plot {
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+    pub(crate) x: PlotAxis,
+    pub(crate) y: PlotAxis,
+}
+
+impl Plot {
+    pub(crate) fn x(&self, value: f64) -> f64 {
+        self.left + self.width * self.x.place(value)
+    }
+
+    pub(crate) fn y(&self, value: f64) -> f64 {
+        self.top + self.height * (1.0 - self.y.place(value))
+    }
+
+    pub(crate) fn at(&self, (x, y): (f64, f64)) -> Point {
+        (self.x(x), self.y(y))
+    }
+
+    /// Lines at the marks.
+    pub(crate) fn grid(&self, x_marks: &[f64], y_marks: &[f64]) -> Markup {
+        html! {
+            g stroke-width="1" {
+                @for x in x_marks { line.grid x1=(x2(self.x(*x))) x2=(x2(self.x(*x))) y1=(self.top) y2=(self.top + self.height) {} }
+                @for y in y_marks { line.grid x1=(self.left) x2=(self.left + self.width) y1=(x2(self.y(*y))) y2=(x2(self.y(*y))) {} }
+            }
+        }
+    }
+
+    /// Numbers at the marks, what they are of, and the frame.
+    pub(crate) fn frame(
+        &self,
+        x_marks: &[f64],
+        y_marks: &[f64],
+        labels: [&str; 2],
+        font_size: f64,
+    ) -> Markup {
+        let bottom = self.top + self.height;
+        html! {
+            @for x in x_marks {
+                text x=(x2(self.x(*x))) y=(bottom + 19.0) text-anchor="middle" { (self.x.label(*x, x_marks)) }
+            }
+            @for y in y_marks {
+                text x=(self.left - 8.0) y=(x2(self.y(*y) + 0.36 * font_size)) text-anchor="end" { (self.y.label(*y, y_marks)) }
+            }
+            text x=(self.left + 0.5 * self.width) y=(bottom + 41.0) text-anchor="middle" { (labels[0]) }
+            text transform=(format!("translate(17 {:.2}) rotate(-90)", self.top + 0.5 * self.height)) text-anchor="middle" {
+                (labels[1])
+            }
+            rect.frame x=(self.left) y=(self.top) width=(self.width) height=(self.height) {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PlotAxis;
+
+    #[test]
+    fn equal_ratios_are_equally_far_apart_on_a_logarithmic_axis() {
+        let axis = PlotAxis::over([1.0, 1000.0].into_iter(), true);
+        assert!(
+            [1.0, 10.0, 100.0, 1000.0]
+                .iter()
+                .enumerate()
+                .all(|(k, v)| (axis.place(*v) - k as f64 / 3.0).abs() < 1e-12)
+        );
+        assert!((axis.between(10.0, 1000.0) - 100.0).abs() < 1e-9);
+        assert_eq!(axis.marks(5), [1.0, 10.0, 100.0, 1000.0]);
+        assert_eq!(PlotAxis::over([20.0, 400.0].into_iter(), true).marks(6), [20.0, 50.0, 100.0, 200.0]);
+        // within less than a decade, and where there is no logarithm
+        assert_eq!(
+            PlotAxis::over([3.0, 4.0].into_iter(), true).marks(5),
+            [3.0, 3.2, 3.4000000000000004, 3.6, 3.8000000000000003, 4.0]
+        );
+        assert_eq!(PlotAxis::over([0.0, 4.0].into_iter(), true).place(1.0), 0.25);
+    }
+
+    #[test]
+    fn nothing_and_one_value_have_an_axis_too() {
+        for values in [vec![], vec![2.0], vec![0.0, f64::NAN]] {
+            let axis = PlotAxis::over(values.into_iter(), false).of_quantity();
+            assert!(axis.place(0.5).is_finite() && axis.low < axis.high, "{axis:?}");
+        }
+    }
+}

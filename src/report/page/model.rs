@@ -1,0 +1,60 @@
+//! The page of one reduced model alone: what a scene without a reference can show.
+
+use crate::format::{model_name, prefixed, with_unit};
+use crate::plot::{ChartPanel, chart};
+use crate::report::figure::curves::curves_chart;
+use crate::report::page::facts::facts;
+use crate::report::page::html::{named, page, scrolled};
+use crate::report::page::section::flight::flight_html;
+use crate::report::page::section::impacts::course;
+use crate::result::{History, Outcome, Summary};
+use crate::scene::Scene;
+use maud::{Markup, PreEscaped, html};
+
+/// The page of the model of `scene` that has the `outcome`.
+pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
+    let Outcome { summary, history } = outcome;
+    let model = format!("model {}", model_name(summary.model.as_deref().unwrap_or("?"), summary.modes));
+    let title = format!("{}: {model}", scene.name);
+    let landing = flight_html(scene, &[summary], None);
+    let body = html! {
+        h1 { (title) }
+        p.soft { (scene.description) }
+        p.note { "A reduced model alone: nothing here is compared with a reference." }
+        @if !summary.warnings.is_empty() { ul { @for warning in &summary.warnings { li { (warning) } } } }
+        (scrolled("Results", &quantities(summary)))
+        h2 { "Curves" }
+        figure { (PreEscaped(curves(&title, history))) }
+        @if summary.impacts.len() > 1 { h2 { "Impacts in series" } figure { (PreEscaped(series(&title, summary))) } }
+        @if !landing.0.is_empty() { h2 { "Landing" } (landing) }
+        details { summary { "The result (SI units)" } (facts(&[("", serde_json::to_value(summary).ok().as_ref())])) }
+        details { summary { "The scene (SI units)" } (facts(&[("", serde_json::to_value(scene).ok().as_ref())])) }
+    };
+    page(&format!("{title} · impactcheck"), &[], &body, &html! {})
+}
+
+fn quantities(summary: &Summary) -> Markup {
+    let shown = |value: Option<f64>, unit| {
+        value.map_or_else(|| "not determined".to_owned(), |value| with_unit(value, prefixed(unit, value), 5))
+    };
+    html! { table { tbody { @for quantity in summary.quantities.iter() { tr {
+        th scope="row" { (named(quantity.name)) }
+        td { (shown(quantity.value, quantity.unit)) }
+    } } } } }
+}
+
+fn curves(title: &str, history: &History) -> String {
+    let curves: Vec<_> = history.curves.iter().map(|c| (c.name, c.unit, &c.values[..])).collect();
+    curves_chart(title, &history.time, &curves)
+}
+
+fn series(title: &str, summary: &Summary) -> String {
+    let panel = ChartPanel {
+        x_label: "Number of the impact".into(),
+        y_label: "Efficiency in %".into(),
+        series: vec![course(summary, String::new())],
+        counted: true,
+        ..ChartPanel::default()
+    };
+    chart(title, &[panel])
+}

@@ -1,0 +1,234 @@
+//! The measured records in the report: alignment, efficiencies, curve metrics.
+
+use crate::format::{prefixed, significant, with_unit, words};
+use crate::kinds::KINDS;
+use crate::measured::{AlignedRecord, Measured, Partner};
+use crate::plot::{ChartPanel, Series, chart};
+use crate::report::figure::scene::phone_measured_figure;
+use crate::report::page::html::{drawn, scrolled};
+use crate::report::page::prose::prose;
+use crate::report::{SceneReport, Theme, measured_figure};
+use maud::{Markup, html};
+
+/// Rows of a table, the heading first.
+type Rows = Vec<Vec<String>>;
+
+/// The efficiencies of repeated impacts over their number (Fig. 13), with their mean and scatter as a band and the models as
+/// lines, as a stand-alone SVG. `None` for fewer than two records.
+pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
+    let measured = report.comparison.measured.as_ref()?;
+    if measured.records.len() < 2 {
+        return None;
+    }
+    let impacts = measured.records.iter().enumerate();
+    let points =
+        impacts.filter_map(|(k, record)| Some((k as f64 + 1.0, 100.0 * record.efficiency?))).collect();
+    let last = measured.records.len() as f64;
+    let level = |partner: &Partner| Series {
+        name: if partner.partner == "reference" { "FE".into() } else { format!("model {}", partner.partner) },
+        points: partner.efficiency.map_or_else(Vec::new, |own| vec![(1.0, 100.0 * own), (last, 100.0 * own)]),
+        ..Series::default()
+    };
+    let series = measured.partners.iter().map(level).chain([Series {
+        name: "measured".into(),
+        points,
+        marks: true,
+        ..Series::default()
+    }]);
+    let band =
+        measured.efficiency.as_ref().and_then(|e| Some((100.0 * e.mean, 100.0 * e.standard_deviation?)));
+    let panel = ChartPanel {
+        x_label: "Number of the impact".into(),
+        y_label: "Efficiency in %".into(),
+        series: series.collect(),
+        counted: true,
+        band,
+        ..ChartPanel::default()
+    };
+    Some(chart(&format!("{}: efficiency of repeated impacts", report.scene.name), &[panel]))
+}
+
+fn name(record: &AlignedRecord) -> String {
+    record.file.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// What is wrong with the records: name of the record, sentence.
+pub(crate) fn effects(measured: &Measured) -> impl Iterator<Item = (String, &str)> {
+    let of = |record| (name(record), record);
+    measured.records.iter().map(of).flat_map(|(name, record)| {
+        record.findings.iter().map(move |finding| (name.clone(), finding.effect.as_str()))
+    })
+}
+
+fn alignment(measured: &Measured) -> Rows {
+    let heading = ["record", "samples", "first contact at", "offset and drift", "efficiency", "95 % band"];
+    let row = |record: &AlignedRecord| {
+        let corrections: Vec<String> = record
+            .channels
+            .iter()
+            .map(|c| {
+                let mut curves = KINDS.into_iter().flat_map(|kind| kind.curves());
+                let unit = curves.find(|curve| curve.name == c.quantity).map_or("1", |curve| curve.unit);
+                format!(
+                    "{}: {}, {} {unit}/s",
+                    words(c.quantity),
+                    with_unit(c.offset, prefixed(unit, c.offset), 4),
+                    significant(c.drift, 4)
+                )
+            })
+            .collect();
+        let percent = |value: Option<f64>, digits| {
+            value.map_or("–".into(), |v| format!("{} %", significant(100.0 * v, digits)))
+        };
+        vec![
+            name(record),
+            record.samples.to_string(),
+            with_unit(record.shift, prefixed("s", record.shift), 6),
+            corrections.join("; "),
+            percent(record.efficiency, 4),
+            percent(record.efficiency_uncertainty, 2),
+        ]
+    };
+    std::iter::once(heading.map(str::to_owned).into()).chain(measured.records.iter().map(row)).collect()
+}
+
+fn metrics(measured: &Measured) -> Rows {
+    let heading =
+        ["partner", "efficiency", "less measured", "curve", "Sprague-Geers", "Russell", "ISO/TS 18571"];
+    let score = |value: Option<f64>| value.map_or("–".into(), |v| significant(v, 3));
+    let mut rows: Rows = vec![heading.map(str::to_owned).into()];
+    for partner in &measured.partners {
+        for curve in &partner.curves {
+            rows.push(vec![
+                partner.partner.clone(),
+                partner.efficiency.map_or("–".into(), |own| format!("{} %", significant(100.0 * own, 4))),
+                partner
+                    .efficiency_difference
+                    .map_or("–".into(), |d| format!("{} points", significant(100.0 * d, 3))),
+                words(&curve.quantity),
+                score(curve.sprague_geers),
+                score(curve.russell),
+                score(curve.iso18571),
+            ]);
+        }
+    }
+    rows
+}
+
+/// What the partners' efficiencies show; nothing if the inputs are certain.
+fn validation(measured: &Measured) -> Option<Rows> {
+    let heading = ["partner", "E", "u_val", "u_num", "u_input", "u_D", "shows", "area", "above, below"];
+    let points = |value: f64| format!("{} points", significant(100.0 * value, 3));
+    let row = |partner: &Partner| {
+        let of = partner.validation.as_ref()?;
+        let known = |u: Option<f64>| u.map_or("–".into(), points);
+        Some(vec![
+            partner.partner.clone(),
+            points(of.error),
+            points(of.u_val),
+            known(of.parts.u_num),
+            points(of.parts.u_input),
+            known(of.parts.u_d),
+            format!("{}: {}", of.verdict.words(), of.sentence),
+            partner.area.map_or("–".into(), |area| points(area.area)),
+            partner
+                .area
+                .map_or("–".into(), |area| format!("{}, {}", points(area.above), points(area.below))),
+        ])
+    };
+    let rows: Rows = measured.partners.iter().filter_map(row).collect();
+    (!rows.is_empty()).then(|| std::iter::once(heading.map(str::to_owned).into()).chain(rows).collect())
+}
+
+/// What the columns of [`validation`] are.
+const VALIDATION: &str = "Efficiency with the uncertain inputs of the scene: E is the computed value minus the mean of the measured ones;     u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009). Area: between the distribution of the computed efficiency and that of the measured ones     (Ferson, Oberkampf & Ginzburg 2008), and its parts where the computed one is larger and smaller.";
+
+/// Mean and scatter in a sentence.
+pub(crate) fn sentence(measured: &Measured) -> String {
+    let Some(series) = &measured.efficiency else {
+        return "No record shows the inner body's free flight: there is no measured efficiency.".into();
+    };
+    let mean = significant(100.0 * series.mean, 4);
+    match series.standard_deviation {
+        Some(scatter) => {
+            let scatter = significant(100.0 * scatter, 2);
+            format!(
+                "Measured efficiency of {} impacts: mean {mean} %, standard deviation {scatter} points.",
+                series.count
+            )
+        }
+        None => format!("Measured efficiency: {mean} %."),
+    }
+}
+
+fn bandwidth(measured: &Measured) -> String {
+    let to = prefixed("Hz", measured.bandwidth);
+    let shown = with_unit(measured.bandwidth, to, 4);
+    format!("The curves of reference and models are filtered to {shown} (zero phase); the records are not.")
+}
+
+/// The section of a scene's page.
+pub(crate) fn measured_html(report: &SceneReport) -> Markup {
+    let Some(measured) = &report.comparison.measured else { return html! {} };
+    let table = |rows: Rows| {
+        let mut rows = rows.into_iter();
+        let heading = rows.next().unwrap_or_default();
+        html! {
+            (scrolled("Measurement", &html! { table.measured {
+                thead { tr { @for cell in &heading { th.left scope="col" { (cell) } } } }
+                tbody { @for row in rows { tr { @for cell in &row { td.left { (cell) } } } } }
+            } }))
+        }
+    };
+    html! {
+        p { (sentence(measured)) }
+        @for (record, effect) in effects(measured) { p { strong { "Warning, " (record) ": " } (prose(effect)) } }
+        figure {
+            @if let Some((wide, narrow)) = measured_figure(report, Theme::Inline).zip(phone_measured_figure(report)) {
+                (drawn(&wide, &narrow))
+            }
+            figcaption {
+                "The first record with reference and models. " (bandwidth(measured)) " "
+                a href=(format!("{}-measured.svg", report.comparison.scene)) { "SVG" } " · "
+                a href=(format!("{}-measured.png", report.comparison.scene)) { "PNG" }
+                @if measured.records.len() > 1 {
+                    " · " a href=(format!("{}-efficiencies.svg", report.comparison.scene)) { "efficiencies" }
+                }
+            }
+        }
+        (table(alignment(measured)))
+        (table(metrics(measured)))
+        @if let Some(rows) = validation(measured) { (table(rows)) p.soft { (VALIDATION) } }
+        p.soft { (prose(measured.rule)) }
+    }
+}
+
+/// The section of the Markdown report.
+pub(crate) fn measured_markdown(report: &SceneReport) -> String {
+    let Some(measured) = &report.comparison.measured else { return String::new() };
+    let table = |rows: Rows| {
+        let line = |cells: &Vec<String>| format!("| {} |\n", cells.join(" | ").replace('\n', " "));
+        let columns = rows.first().map_or(0, Vec::len);
+        let mut text = String::new();
+        for (k, row) in rows.iter().enumerate() {
+            text += &line(row);
+            if k == 0 {
+                text += &format!("|{}\n", "---|".repeat(columns));
+            }
+        }
+        text
+    };
+    let warnings: String =
+        effects(measured).map(|(record, effect)| format!("**Warning, {record}:** {effect}\n\n")).collect();
+    let validation =
+        validation(measured).map_or_else(String::new, |rows| format!("{}\n{VALIDATION}\n\n", table(rows)));
+    format!(
+        "\n### Measurement\n\n{} {}\n\n{warnings}![Measured displacement and velocity]({}-measured.svg)\n\n{}\n{}\n{validation}{}\n",
+        sentence(measured),
+        bandwidth(measured),
+        report.comparison.scene,
+        table(alignment(measured)),
+        table(metrics(measured)),
+        measured.rule
+    )
+}
