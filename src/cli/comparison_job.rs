@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record};
 use crate::reference::{COARSER, Resolution, Stored};
-use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport};
+use crate::report::{self, Attachments, Cost, Export, FigureFile, Report, SceneReport};
 use crate::result::Outcome;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -34,7 +34,7 @@ pub(super) struct Job<'a> {
     /// Scene files, and what they say.
     pub(super) scenes: Vec<(PathBuf, Scene)>,
     records: Vec<Record>,
-    figures: Vec<(PathBuf, FigureFormat)>,
+    figures: Vec<(PathBuf, &'static dyn Export<FigureFile>)>,
 }
 
 /// Reference and reduced models of one scene.
@@ -277,7 +277,8 @@ impl<'a> Job<'a> {
         }
         report::write(report, &self.arguments.out)?;
         for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
-            write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
+            let svg = report::printed_figure(scene, self.arguments.figure_width);
+            write_file(file, &format.bytes(&FigureFile { title: scene.scene.name.clone(), svg })?)?;
         }
         if let Some(file) = &outputs.junit {
             write_file(file, report::junit(report)?.as_bytes())?;

@@ -57,5 +57,5 @@ fn errors_of_every_integrator_fall_with_its_tolerance_and_ratios_follow_from_the
         // Hertz's half-spaces are off by percents where bodies scaled from others are not
         assert_eq!(largest > 0.02, series.model == "B", "{series:?}");
     }
-    assert!(figure(&bench).matches("<polyline").count() == 3);
+    assert!(figure(&bench).matches("<path").count() == 3);
 }
