@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record};
 use crate::reference::{Resolution, Stored};
-use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport, Width};
+use crate::report::{self, Attachments, Cost, Export, FigureFile, Report, SceneReport, Width};
 use crate::result::Outcome;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -34,7 +34,7 @@ pub(super) struct Job<'a> {
     /// Scene files, and what they say.
     pub(super) scenes: Vec<(PathBuf, Scene)>,
     records: Vec<Record>,
-    figures: Vec<(PathBuf, FigureFormat)>,
+    figures: Vec<(PathBuf, &'static dyn Export<FigureFile>)>,
 }
 
 /// Reference and reduced models of one scene.
@@ -299,7 +299,8 @@ impl<'a> Job<'a> {
     pub(super) fn write(&self, report: &Report) -> Result<()> {
         report::write(report, &self.arguments.out)?;
         for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
-            write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
+            let svg = report::printed_figure(scene, self.arguments.figure_width);
+            write_file(file, &format.bytes(&FigureFile { title: scene.scene.name.clone(), svg })?)?;
         }
         Ok(())
     }
