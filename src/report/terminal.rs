@@ -1,10 +1,9 @@
 //! A short table for the terminal.
 
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
-use crate::report::Report;
-use crate::report::kinds;
-use crate::report::page::section::measured;
+use crate::report::page::section::{measured, validation};
 use crate::report::summary_column::SummaryColumn;
+use crate::report::{Report, check_failure, kinds, row_told};
 use crate::result::{Outcome, Summary};
 use crate::scene::Scene;
 use anstyle::{AnsiColor, Style};
@@ -44,7 +43,7 @@ pub(crate) fn findings(comparison: &SceneComparison) -> String {
         line(&format!("{warning}: reference"), of_reference.clone());
     }
     for check in comparison.integrity.iter().filter(|c| c.verdict.failed()) {
-        line("reference", crate::report::ci::junit::integrity_failure(check));
+        line("reference", check_failure(check));
     }
     for (record, effect) in comparison.measured.iter().flat_map(measured::effects) {
         line(&format!("{warning}: {record}"), effect.to_owned());
@@ -54,10 +53,10 @@ pub(crate) fn findings(comparison: &SceneComparison) -> String {
             line(&format!("{warning}: {}", model.model), of_model.clone());
         }
         for row in model.discrepancies.iter().filter(|d| d.is_told()) {
-            line(&model.model, crate::report::ci::junit::told(row));
+            line(&model.model, row_told(row));
         }
         for check in model.integrity.iter().filter(|c| c.verdict.failed()) {
-            line(&model.model, crate::report::ci::junit::integrity_failure(check));
+            line(&model.model, check_failure(check));
         }
     }
     let gated = comparison.gated_verdicts().count();
@@ -92,7 +91,7 @@ pub fn terminal(report: &Report) -> String {
             text += &format!("  {}\n", measured::sentence(measured));
         }
         text += &findings(comparison);
-        text += &crate::report::page::section::validation::validation_text(comparison);
+        text += &validation::validation_text(comparison);
         text.push('\n');
     }
     text
