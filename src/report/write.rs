@@ -20,8 +20,11 @@ use std::path::{Component, Path, PathBuf};
 /// Pixels of the PNG per unit of the drawing: 760 units are 2280 px, 300 dpi at a width of 19 cm.
 const PNG_SCALE: f32 = 3.0;
 
+/// A format of what stands in a folder.
+type OfFolder = dyn for<'f> Export<Folder<'f>>;
+
 /// Files of all scenes, and their names without ending.
-const OF_ALL: [(&str, &dyn for<'f> Export<Folder<'f>>); 4] =
+const OF_ALL: [(&str, &OfFolder); 4] =
     [("index", &Index), ("comparison", &Json), ("comparison", &Markdown), ("junit", &JUnit)];
 /// Files of each scene, of its name.
 const OF_SCENE: [&dyn for<'s> Export<SceneReport<'s>>; 2] = [&Csv, &Page];
@@ -100,7 +103,7 @@ pub fn check_writable(dir: &Path) -> Result<()> {
 fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)>> {
     let mut names = BTreeSet::new();
     let folder = Folder { report, scenes: standing };
-    let file = |(stem, format): (&str, &dyn for<'f> Export<Folder<'f>>)| {
+    let file = |(stem, format): (&str, &OfFolder)| {
         Ok((format!("{stem}.{}", format.ending()), format.bytes(&folder)?))
     };
     let mut files: Vec<(String, Vec<u8>)> = OF_ALL.into_iter().map(file).collect::<Result<_>>()?;

@@ -177,7 +177,8 @@ impl UnitPlates {
         Ok(self.unit(plate.edge, poisson_ratio, modes)?.scale(plate))
     }
 
-    /// As [`shapes`], without solving an eigenproblem again.
+    /// Mass-normalised deflections of `plate` at `radii` in m in its lowest `modes` elastic modes (and before them in the
+    /// rigid one of a free plate), kg^(-1/2); positive at the centre, as in [`modes`]. Shape (modes, radii).
     ///
     /// # Errors
     /// As [`UnitPlate::new`].
