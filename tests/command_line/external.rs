@@ -105,7 +105,7 @@ fn a_program_that_misbehaves_is_told_of_and_stops_nothing() {
     let failing = [
         ("fails", "echo broken >&2; exit 3", "it failed (exit status: 3); its last messages: broken"),
         ("hangs", "sleep 1000", "it was not done after 0.5 s (timeout) and was ended"),
-        ("nan", "echo '{\"efficiency\": NaN}'", "JSON knows no NaN and no infinity: write null"),
+        ("nan", "echo '{\"efficiency\": NaN}'", "JSON has no NaN and no infinity: write null"),
         (
             "unordered",
             "echo '{\"history\": {\"time\": [0, 2e-6, 1e-6], \"outer_velocity\": [1, 1, 1]}}'",

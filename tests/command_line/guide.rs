@@ -72,7 +72,7 @@ const MORE: &str = "[...]";
 /// What a page shows of an output in the `folder` of a reader.
 fn shown(output: &std::process::Output, folder: &Path) -> Vec<String> {
     let text = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
-    let text = text.concat().replace(&format!("{}/", folder.display()), "");
+    let text = text.concat().replace(&format!("{}/", folder.display()), "").replace(&format!("{ROOT}/"), "");
     let lines: Vec<String> = text.trim_end().lines().map(|line| line.trim_end().to_owned()).collect();
     if lines.len() <= SHOWN {
         return lines;
@@ -82,8 +82,8 @@ fn shown(output: &std::process::Output, folder: &Path) -> Vec<String> {
 
 /// `line` without what differs from run to run: run times, rounding errors, times of day.
 fn repeatable(line: &str) -> String {
-    let clock = Regex::new(r"[0-9.]+ (s|ms|µs)( \(excluding|;|$)|\d\d:\d\d(:\d\d)?|\d{4}-\d\d-\d\d")
-        .expect("expression");
+    let clock =
+        Regex::new(r"\bin [0-9.]+ (s|ms|µs)\b|\d\d:\d\d(:\d\d)?|\d{4}-\d\d-\d\d").expect("expression");
     if line.contains("residual") {
         return line.split_whitespace().next().unwrap_or_default().to_owned();
     }

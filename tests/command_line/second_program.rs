@@ -123,7 +123,9 @@ fn a_solution_that_is_asked_for_and_missing_or_in_contradiction_ends_with_11() {
     let missing = compared(store.path(), &["--reference-check", "--resolution", "coarse"]);
     assert_eq!(missing.status, 11, "{}", missing.said);
     assert!(
-        missing.said.contains("the calculix-coarse reference of `scaled-plate-r10` is missing"),
+        missing
+            .said
+            .contains("the reference of `scaled-plate-r10` (resolution `calculix-coarse`) is missing"),
         "{}",
         missing.said
     );

@@ -44,7 +44,7 @@ fn the_scatter_of_a_scene_is_found_and_a_study_goes_on_where_it_stopped() {
 #[test]
 fn what_can_t_be_sampled_is_refused() {
     for (arguments, part) in [
-        (&["uncertainty", "scaled-plate-r10"][..], "does not say how uncertain its inputs are"),
+        (&["uncertainty", "scaled-plate-r10"][..], "has no uncertain inputs"),
         (&["uncertainty", SCENE, "--samples", "8"], "8 samples: 16 to"),
         (&["uncertainty", SCENE, "--samples", "many"], "neither a number nor auto"),
         (&["uncertainty", SCENE, "--quantity", "eficiency"], "did you mean `efficiency`?"),

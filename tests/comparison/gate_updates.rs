@@ -394,6 +394,6 @@ fn github_gets_annotations_at_the_tolerances_and_a_summary() {
         failed.contains(&format!("### What failed\n\n- {SCENE}, model B: outer_force_peak: model")),
         "{summary}"
     );
-    assert!(undecided.contains(&format!("- {SCENE}, model C: efficiency: reduced")), "{summary}");
+    assert!(undecided.contains(&format!("- {SCENE}, model C: efficiency: model")), "{summary}");
     assert!(!repository.gate(&[]).1.contains("::error"), "only where GitHub runs it");
 }

@@ -50,7 +50,9 @@ fn sentences(source: &Source) -> Vec<String> {
 
 /// Whether this is what lies between two texts: a quote in a comment's place makes it look like one.
 fn is_code(text: &str) -> bool {
-    ["::", "let ", "(|", ").", "))", ".join(", "fn ", "=> ", "DEAR"].iter().any(|mark| text.contains(mark))
+    ["::", "let ", "(|", ").", "))", ".join(", "fn ", "=> ", "DEAR", ", partner."]
+        .iter()
+        .any(|mark| text.contains(mark))
 }
 
 /// Pages of the guide: what is no code.

@@ -307,7 +307,7 @@ fn the_mesh_of_another_design_is_refused_and_one_that_does_not_tell_is_warned_of
         let model = SeatModel::new(&scene(), Model::C, Some(4), mesh, &Cache::off()).expect("model");
         model.run(1e-2).expect("run").warnings.join(" ")
     };
-    assert!(told(&super::reduced::mesh()).contains("does not say which geometry"));
+    assert!(told(&super::reduced::mesh()).contains("has no record of its geometry"));
     let text = std::fs::read_to_string(super::reduced::mesh().path()).expect("mesh");
     let hash = scene().seal_seat().expect("seat").geometry_hash();
     let own = folder.path().join("own.vtu");
