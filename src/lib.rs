@@ -37,7 +37,6 @@ mod format;
 pub mod interrupt;
 pub mod kinds;
 pub mod measured;
-pub mod movement;
 pub mod optimise;
 pub mod plot;
 mod process_output;

@@ -43,9 +43,7 @@ pub struct Arguments {
     /// Source of the outer body's speed: scene (the signal may have an offset) or measured (it has none)
     #[arg(long, default_value = "scene", value_name = "SOURCE")]
     pub(super) speed: Speed,
-    /// Write the figure for a paper to this file (.svg, .pdf or .png), or an animation of a plate impact (.gif): the reference's
-    /// stress, as `reference SCENE --fields 40` stores it, beside a reduced model's deflection; of several scenes, the scene's name
-    /// is added
+    /// Write the figure for a paper to this file (.svg, .pdf or .png); of several scenes, the scene's name is added
     #[arg(long, value_name = "FILE")]
     pub(super) figure: Option<PathBuf>,
     /// Width of the figure: 85 mm (one column) to 175 mm (a page)

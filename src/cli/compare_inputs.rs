@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::kinds::{self, Use};
 use crate::measured::Record;
 use crate::project::project_root;
-use crate::report::{FIGURE_WIDTHS, FigureFile};
+use crate::report::{FIGURE_WIDTHS, FigureFormat};
 use crate::scene::{self, Scene};
 use std::path::{Path, PathBuf};
 
@@ -50,18 +50,9 @@ pub(super) fn named_apart(scenes: &[(PathBuf, Scene)]) -> Result<()> {
 pub(super) fn figures(
     file: Option<&PathBuf>,
     scenes: &[(PathBuf, Scene)],
-) -> Result<Vec<(PathBuf, FigureFile)>> {
+) -> Result<Vec<(PathBuf, FigureFormat)>> {
     let Some(file) = file else { return Ok(Vec::new()) };
-    let format = FigureFile::of(file)?;
-    if let (FigureFile::Animation, Some((_, scene))) =
-        (format, scenes.iter().find(|(_, scene)| !kinds::of(scene).serves(Use::Animation)))
-    {
-        return Err(Error::Usage(format!(
-            "--figure {}: scene `{}` is no plate impact, the only kind that is animated",
-            file.display(),
-            scene.name
-        )));
-    }
+    let format = FigureFormat::of(file)?;
     if scenes.len() == 1 {
         return Ok(vec![(file.clone(), format)]);
     }

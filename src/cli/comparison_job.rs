@@ -4,7 +4,6 @@ use super::asked_model::AskedModel;
 use super::compare_arguments::Arguments;
 use super::compare_inputs;
 use super::external;
-use super::film::film;
 use super::scatter::scatter;
 use super::second_program;
 use super::stored_references::{look_up, tell_reused};
@@ -16,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record};
 use crate::reference::{Resolution, Stored};
-use crate::report::{self, Attachments, Cost, FigureFile, Report, SceneReport, Width};
+use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport, Width};
 use crate::result::Outcome;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -35,7 +34,7 @@ pub(super) struct Job<'a> {
     /// Scene files, and what they say.
     pub(super) scenes: Vec<(PathBuf, Scene)>,
     records: Vec<Record>,
-    figures: Vec<(PathBuf, FigureFile)>,
+    figures: Vec<(PathBuf, FigureFormat)>,
 }
 
 /// Reference and reduced models of one scene.
@@ -211,12 +210,10 @@ impl<'a> Job<'a> {
         let validated: Arc<[Validation]> = validated_scenes::known(context, &found).into();
         let coverage = validated_scenes::coverage(context, &validated).map(Arc::new);
         let compared = Some(chrono::Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string());
-        let is_animated = self.figures.iter().any(|(_, format)| *format == FigureFile::Animation);
         let mut scenes = Vec::new();
         for (((file, scene), results), comparison) in of_scenes().zip(comparisons) {
             let Results { stored, reduced, cost, .. } = results;
             let attachments = Attachments {
-                film: film(context, scene, (stored, reduced), is_animated)?,
                 cost: cost.clone(),
                 folder: compare_inputs::folder(file),
                 compared: compared.clone(),

@@ -117,7 +117,7 @@ fn table(found: &Coverage) -> String {
         "{:<28} {:<6} {:<14} {:>6}  {}",
         "feature",
         "model",
-        "held against",
+        "compared with",
         "scenes",
         "largest difference (uncertainty of the comparator, 95 %)"
     )];

@@ -11,7 +11,6 @@ mod coverage;
 mod diff;
 mod doctor;
 mod external;
-mod film;
 mod gate;
 pub mod in_process;
 mod kinds;

@@ -9,7 +9,7 @@ use serde::Serialize;
 pub struct ReferenceCheck {
     /// Name of the other program.
     pub program: String,
-    /// Whether all rows are within their joint uncertaintys.
+    /// Whether all rows are within their joint uncertainties.
     pub verdict: BandVerdict,
     /// One entry per quantity that both determine with a band.
     pub rows: Vec<ReferenceRow>,

@@ -30,7 +30,7 @@ fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
     let needed = (tolerance - row.checked()).abs();
     let to = prefixed(&row.unit, row.reference.unwrap_or(band));
     let [needed_value, now] = [rounded_down(needed), band].map(|value| with_unit(value, to, 2));
-    let wish = format!("an uncertainty of at most {needed_value} is needed (now {now})");
+    let uncertainty = format!("an uncertainty of at most {needed_value} is needed (now {now})");
     // what a target is about is the reference's own band
     let reached = reached.filter(|_| row.difference_uncertainty.is_none());
     let target = reached.map(|reached| reached * needed / band);
@@ -38,11 +38,11 @@ fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
         Some(target) if target >= SMALLEST_TARGET => {
             let target = rounded_down(100.0 * target);
             format!(
-                "{wish}: compute the reference with --target-error {target}% and pass --resolution {target}%, or take a finer --resolution"
+                "{uncertainty}: compute the reference with --target-error {target}% and pass --resolution {target}%, or take a finer --resolution"
             )
         }
-        None if band.is_finite() => format!("{wish}: take a finer --resolution"),
-        _ => format!("{wish}, which no mesh gives: specify a tolerance wider than the uncertainty"),
+        None if band.is_finite() => format!("{uncertainty}: take a finer --resolution"),
+        _ => format!("{uncertainty}, which no mesh gives: specify a tolerance wider than the uncertainty"),
     })
 }
 
@@ -59,6 +59,7 @@ mod tests {
     use super::{rounded_down, sentence};
     use crate::comparison::Verdict;
     use crate::comparison::discrepancy::{Discrepancy, Scales};
+    use crate::format::{prefixed, with_unit};
     use crate::scene::Tolerance;
 
     fn row(reduced: f64, band: f64) -> Discrepancy {

@@ -145,17 +145,13 @@ fn covered_until(quantity: &str, history: &History) -> f64 {
     history.rate_after_end(quantity).map_or(end, |_| f64::INFINITY)
 }
 
-/// A curve of a history that can be sampled, at the instants of `axis`.
+/// A curve of a history that can be sampled, at the instants of `axis`; after its end in free flight.
 fn sampled(quantity: &str, history: &History, axis: &CommonAxis) -> Vec<f64> {
-    at(quantity, history, (0..axis.samples).map(|k| axis.time(k)))
-}
-
-/// A curve of a history that can be sampled, at `times` in s; after its end in free flight.
-pub(crate) fn at(quantity: &str, history: &History, times: impl Iterator<Item = f64>) -> Vec<f64> {
     let (Some(values), Some(&end)) = (history.curve(quantity), history.time.last()) else {
         return Vec::new();
     };
     let curve = MonotoneCubic::new(&history.time, values);
     let rate = history.rate_after_end(quantity).unwrap_or(0.0);
+    let times = (0..axis.samples).map(|k| axis.time(k));
     times.map(|t| curve.at(t) + rate * (t - end).max(0.0)).collect()
 }

@@ -10,8 +10,8 @@ mod russell;
 mod sprague_geers;
 pub mod table;
 
+pub(crate) use alignment::peak;
 pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};
-pub(crate) use alignment::{at, peak};
 pub use curve_metrics::CurveMetrics;
 pub(crate) use interpolation::MonotoneCubic;
 pub use iso18571::{Grade, Iso18571, iso18571};

@@ -19,8 +19,8 @@ pub use plate_impact::shared::SharedBodies;
 pub use seal_seat::SeatMesh as FollowedMesh;
 
 use crate::error::{Error, Result};
-use crate::result::{History, Summary};
-use crate::scene::{Geometry, Model, Scene};
+use crate::result::Summary;
+use crate::scene::{Geometry, Scene};
 use impactcheck_physics::kinds as physics;
 
 /// What not every kind of scene can be used for.
@@ -30,8 +30,6 @@ pub enum Use {
     Records,
     /// Its uncertain inputs are sampled.
     Samples,
-    /// Its impact is shown as an animation.
-    Animation,
     /// Its mesh is a file that can be made by itself.
     MeshFile,
 }
@@ -106,22 +104,6 @@ pub trait Kind: physics::Kind {
     /// [`Error::Scene`] of other kinds.
     fn approach(&self, scene: &Scene) -> Result<Approach> {
         Err(refused(scene, Use::Records))
-    }
-
-    /// So many radii in m, and the deflection in m of the struck body of `scene` there at `times` in s: that of `model` with the
-    /// history given. Shapes (radii), (times, radii). Of kinds that serve [`Use::Animation`].
-    ///
-    /// # Errors
-    /// Those of the model.
-    fn deflection(
-        &self,
-        scene: &Scene,
-        _model: (Model, Option<usize>),
-        _history: &History,
-        _radii: usize,
-        _times: &[f64],
-    ) -> Result<(Vec<f64>, Vec<Vec<f64>>)> {
-        Err(refused(scene, Use::Animation))
     }
 
     /// What `optimise` maximises by itself: a quantity, or [`INTENDED_SPEED`].

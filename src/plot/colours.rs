@@ -1,10 +1,7 @@
-//! Colours of the drawings: Okabe and Ito's for models, which colour-blind readers can tell apart, and pale ones for bodies.
+//! Colours of the drawings: Okabe and Ito's for models, which colour-blind readers can tell apart, and a map for fields.
 
 /// Of models A, B and C.
 pub const MODELS: [(&str, [u8; 3]); 3] = [("A", [213, 94, 0]), ("B", [0, 114, 178]), ("C", [0, 158, 115])];
-/// Of the outer body, plate and inner body.
-pub(crate) const BODIES: [[u8; 3]; 3] = [[191, 216, 236], [226, 226, 220], [244, 217, 178]];
-
 /// How a model is drawn: colour, dashes and the shape of its marks each tell it apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Look {
@@ -42,11 +39,6 @@ pub(crate) fn look<'m>(name: &str, models: impl IntoIterator<Item = &'m str>) ->
 /// As SVG has it.
 pub fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
-}
-
-/// Of the model called `name`; of any other that of C.
-pub(crate) fn of_model(name: &str) -> [u8; 3] {
-    MODELS.iter().find(|(model, _)| *model == name).unwrap_or(&MODELS[2]).1
 }
 
 /// Cividis (Nunez, Anderton & Renslow 2018), a map that looks alike to colour-blind readers; `share` within 0 to 1.

@@ -29,7 +29,7 @@ pub(crate) fn tree(svg: &str) -> Result<usvg::Tree> {
 ///
 /// # Errors
 /// As [`png`].
-pub(crate) fn raster(svg: &str, scale: f32) -> Result<tiny_skia::Pixmap> {
+fn raster(svg: &str, scale: f32) -> Result<tiny_skia::Pixmap> {
     let tree = tree(svg)?;
     let size = tree.size().to_int_size().scale_by(scale).ok_or_else(|| internal("no size"))?;
     let mut pixmap =

@@ -106,20 +106,6 @@ impl Raster {
         shown
     }
 
-    /// Size in pixels.
-    pub(crate) fn size(&self) -> [usize; 2] {
-        [self.width, self.height]
-    }
-
-    /// Colour of the pixel of a field in column `x` and row `y`; `None` where nothing is.
-    pub(crate) fn colour(&self, x: usize, y: usize) -> Option<[u8; 3]> {
-        match self.pixels[y * self.width + x] {
-            0 => None,
-            OUTLINE => Some(OUTLINE_COLOUR),
-            level => Some(cividis(f64::from(level - 1) / (LEVELS - 1) as f64)),
-        }
-    }
-
     /// Nodes in pixels of the right half, z upwards.
     fn placed(&self, mesh: QuadMesh, view: View) -> Vec<[f64; 2]> {
         let scale = self.width as f64 / (2.0 * view.radius);

@@ -10,6 +10,9 @@ use std::path::{Path, PathBuf};
 /// Number of a quadrilateral among VTK's cell types.
 const VTK_QUAD: f64 = 9.0;
 
+/// Lists the fields of a solution and their instants.
+const SERIES: &str = "stress.pvd";
+
 /// Quadrilaterals in the half-plane (r, z), and what is known of each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldMesh {
@@ -23,8 +26,6 @@ pub struct FieldMesh {
     pub von_mises: Option<Vec<f64>>,
     /// Accumulated plastic strain of each element after the last impact, if the file has it. Shape (quads.len()).
     pub plastic_strain: Option<Vec<f64>>,
-    /// Displacement along r and z of the nodes in m, if the file has it. Shape (points.len()).
-    pub displacement: Option<Vec<[f64; 2]>>,
 }
 
 impl FieldMesh {
@@ -57,14 +58,9 @@ impl Stored {
         nearest.map(|(instant, file)| Ok((instant, FieldMesh::read(&file)?))).transpose()
     }
 
-    /// Instants in s, rising, and files of the fields that are there.
-    ///
-    /// # Errors
-    /// One sentence that says what is wrong with the file that lists them.
-    pub(crate) fn fields_over_time(&self) -> Result<Vec<(f64, PathBuf)>, String> {
-        let mut series = series(&self.folder)?;
-        series.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Ok(series)
+    /// The file that lists the fields that are stored, for ParaView.
+    pub(crate) fn fields_over_time(&self) -> Option<PathBuf> {
+        Some(self.folder.join(SERIES)).filter(|file| file.is_file())
     }
 }
 
@@ -77,7 +73,7 @@ pub(super) fn series_nearest(folder: &Path, time: f64) -> Result<Option<(f64, Pa
 
 /// Instants in s and files of the fields in the series of `folder` that are there.
 fn series(folder: &Path) -> Result<Vec<(f64, PathBuf)>, String> {
-    let series = folder.join("stress.pvd");
+    let series = folder.join(SERIES);
     if !series.is_file() {
         return Ok(Vec::new());
     }
@@ -145,18 +141,12 @@ fn parse(text: &str) -> Result<FieldMesh, String> {
     let bodies: Vec<usize> = arrays.needed("CellData", "body")?.iter().map(|b| *b as usize).collect();
     let von_mises = arrays.get("CellData", "von_mises")?;
     let plastic_strain = arrays.get("CellData", "plastic_strain")?;
-    let displacement = arrays.get("PointData", "displacement")?;
-    let displacement: Option<Vec<[f64; 2]>> =
-        displacement.map(|vectors| vectors.chunks_exact(3).map(|v| [v[0], v[1]]).collect());
     let [stresses, strains] = [&von_mises, &plastic_strain].map(|values| values.as_ref().map(Vec::len));
     let lengths = [Some(bodies.len()), stresses, strains];
     if quads.is_empty() || lengths.into_iter().flatten().any(|n| n != quads.len()) {
         return Err("the numbers of cells and of their data differ".into());
     }
-    if displacement.as_ref().is_some_and(|vectors| vectors.len() != points.len()) {
-        return Err("the numbers of points and of their displacements differ".into());
-    }
-    Ok(FieldMesh { points, quads, bodies, von_mises, plastic_strain, displacement })
+    Ok(FieldMesh { points, quads, bodies, von_mises, plastic_strain })
 }
 
 /// Values of a `DataArray`.
@@ -191,15 +181,6 @@ fn read_as<const N: usize>(data: &[u8], number: impl Fn([u8; N]) -> f64) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::parse;
-
-    #[test]
-    fn displacements_along_r_and_z_belong_to_the_points() {
-        let data = r#"<PointData><DataArray type="Float64" Name="displacement" NumberOfComponents="3" format="ascii">1 2 0 3 4 0 5 6 0 7 8 0</DataArray></PointData><Cells>"#;
-        let mesh = parse(&ONE_ELEMENT.replace("<Cells>", data)).expect("valid");
-        assert_eq!(mesh.displacement, Some(vec![[1.0, 2.0], [3.0, 4.0], [5.0, 6.0], [7.0, 8.0]]));
-        let error = parse(&ONE_ELEMENT.replace("<Cells>", &data.replace(" 7 8 0", ""))).expect_err("too few");
-        assert!(error.contains("displacements differ"), "{error}");
-    }
 
     const ONE_ELEMENT: &str = r#"<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"><UnstructuredGrid>
 <Piece NumberOfPoints="4" NumberOfCells="1">

@@ -3,12 +3,13 @@
 use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
 use crate::coverage::Coverage;
+use crate::project::project_root;
 use crate::reference::{CurveBands, Dents, FieldMesh, MeshSection, Stored};
-use crate::report::{Animation, kinds};
+use crate::report::kinds;
 use crate::result::History;
 use crate::scene::Scene;
 use crate::validated::Validation;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Nothing of this changes a verdict; all of it may be missing.
@@ -26,10 +27,8 @@ pub struct Attachments {
     pub section: Option<MeshSection>,
     /// Its stress at the instant (s) kept that is nearest to the largest force.
     pub section_stress: Option<(f64, MeshSection)>,
-    /// The series of deformed states that ParaView plays.
-    pub animation: Option<PathBuf>,
-    /// The impact moving.
-    pub film: Option<Animation>,
+    /// The reference's series of fields, which ParaView plays.
+    pub fields: Option<PathBuf>,
     /// What the reduced models have cost, in their order; of models that share a mesh with the reference.
     pub cost: Vec<Cost>,
     /// Folder of the scene's file, for people; empty = not known.
@@ -59,7 +58,14 @@ impl Attachments {
     /// What the store has beside the numbers of a solution of `scene`. Meshes and fields that can't be drawn are omitted.
     pub fn of(scene: &Scene, stored: &Stored) -> Self {
         let drawn = kinds::of(scene).attachments(stored);
-        Attachments { bands: stored.bands.clone(), ..drawn }
+        // the same on every machine, so that equal results give equal reports
+        let root = project_root().unwrap_or_default();
+        let in_project = |file: PathBuf| file.strip_prefix(&root).map(Path::to_owned).unwrap_or(file);
+        Attachments {
+            bands: stored.bands.clone(),
+            fields: stored.fields_over_time().map(in_project),
+            ..drawn
+        }
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::error::{Error, Result};
 use crate::interrupt::Scratch;
 use crate::report::page::coverage;
-use crate::report::page::section::animation;
 use crate::report::page::validated_map;
 use crate::report::page::validated_map::ValidatedMap;
 use crate::report::run_times::same_but_for_run_times;
@@ -115,9 +114,6 @@ fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)
             let stem = format!("{name}{}", drawing.ending);
             files.push((format!("{stem}.png"), crate::plot::png(&drawing.svg, PNG_SCALE)?));
             files.push((format!("{stem}.svg"), drawing.svg.into_bytes()));
-        }
-        if let Some(film) = &scene.attachments.film {
-            files.push((animation::file(name), film.gif.clone()));
         }
         files.push((format!("{name}.csv"), crate::report::curves_csv(scene)?.into_bytes()));
         files.push((format!("{name}.html"), crate::report::scene_page(scene).into_bytes()));

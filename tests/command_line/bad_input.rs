@@ -39,6 +39,28 @@ fn scene_with(folder: &Path, from: &str, to: &str) -> PathBuf {
     file
 }
 
+/// Before anything is computed: a GIF was written by earlier versions.
+#[test]
+fn figures_in_formats_that_there_are_not_are_refused_with_those_that_there_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = folder.path().join("sweep.toml");
+    let text = "scene = \"scaled-plate-r10\"\n[[vary]]\nfield = \"plate.radius\"\nvalues = [0.03, 0.04]\n";
+    fs::write(&plan, text).unwrap();
+    let [figure, out] = ["impact.gif", "out"].map(|name| folder.path().join(name));
+    let (figure, out) = (figure.to_str().unwrap(), out.to_str().unwrap());
+    for command in [
+        &["compare", "scaled-plate-r6.35", "--models", "A"][..],
+        &["study", "sweep", plan.to_str().unwrap()],
+        &["uncertainty", "examples/uncertainty/table1-r6.35.toml"],
+    ] {
+        let arguments = [command, &["--figure", figure, "--out", out]].concat();
+        let ended = impactcheck(&arguments, &[]);
+        let expected = format!("--figure {figure}: the name has to end in .svg, .pdf or .png");
+        assert!(ended.status == 2 && ended.error.contains(&expected), "{arguments:?}: {}", ended.error);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is written");
+    }
+}
+
 #[test]
 fn invalid_scenes_end_with_3_and_name_field_and_line() {
     let cases = [

@@ -1,7 +1,8 @@
-//! Every command of the guide runs. Blocks of `console` need no FEniCSx and no stored solution but the shipped ones; those
+//! Every command of the guide runs and prints what the guide shows. Blocks of `console` need no FEniCSx and no stored solution but the shipped ones; those
 //! of `console live` (with FEniCSx) and `console slow` (minutes, with FEniCSx) run where `IMPACTCHECK_GUIDE` is `live` or `slow`, as `make test`
 //! and `make evidence` do.
 
+use regex::Regex;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -25,10 +26,68 @@ fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
 #[test]
 fn every_chapter_is_in_the_summary() {
     let listed = chapters();
-    for entry in fs::read_dir(Path::new(ROOT).join("guide/src")).unwrap() {
-        let name = entry.unwrap().file_name().into_string().unwrap();
+    let pages = |folder: &Path| {
+        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        entries.collect::<Vec<_>>()
+    };
+    let root = Path::new(ROOT).join("guide/src");
+    let deep = pages(&root).into_iter().filter(|path| path.is_dir()).flat_map(|folder| pages(&folder));
+    for path in
+        pages(&root).into_iter().chain(deep).filter(|path| path.extension().is_some_and(|e| e == "md"))
+    {
+        let name = path.strip_prefix(&root).unwrap().to_str().unwrap().to_owned();
         assert!(name == "SUMMARY.md" || listed.contains(&name), "{name}");
     }
+}
+
+/// A page in parts: commands of the blocks in one language, and the lines around them.
+enum Part<'a> {
+    Line(&'a str),
+    /// The line of a command, and what the page shows of its output.
+    Command(&'a str, Vec<&'a str>),
+}
+
+fn parts<'a>(text: &'a str, language: &str) -> Vec<Part<'a>> {
+    let fence = format!("```{language}");
+    let (mut parts, mut inside) = (Vec::new(), false);
+    for line in text.lines() {
+        if line.starts_with("```") {
+            inside = !inside && line == fence;
+            parts.push(Part::Line(line));
+        } else if inside && line.starts_with("$ ") {
+            parts.push(Part::Command(line, Vec::new()));
+        } else if let (true, Some(Part::Command(_, shown))) = (inside, parts.last_mut()) {
+            shown.push(line);
+        } else {
+            parts.push(Part::Line(line));
+        }
+    }
+    parts
+}
+
+/// Lines of an output that a page shows at most; of more the first ones and `MORE`.
+const SHOWN: usize = 24;
+const MORE: &str = "[...]";
+
+/// What a page shows of an output in the `folder` of a reader.
+fn shown(output: &std::process::Output, folder: &Path) -> Vec<String> {
+    let text = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
+    let text = text.concat().replace(&format!("{}/", folder.display()), "");
+    let lines: Vec<String> = text.trim_end().lines().map(|line| line.trim_end().to_owned()).collect();
+    if lines.len() <= SHOWN {
+        return lines;
+    }
+    lines.into_iter().take(SHOWN - 4).chain([MORE.to_owned()]).collect()
+}
+
+/// `line` without what differs from run to run: run times, rounding errors, times of day.
+fn repeatable(line: &str) -> String {
+    let clock = Regex::new(r"[0-9.]+ (s|ms|µs)( \(excluding|;|$)|\d\d:\d\d(:\d\d)?|\d{4}-\d\d-\d\d")
+        .expect("expression");
+    if line.contains("residual") {
+        return line.split_whitespace().next().unwrap_or_default().to_owned();
+    }
+    clock.replace_all(line, "TIME").into_owned()
 }
 
 /// A copy of the folder `from`.
@@ -55,22 +114,22 @@ fn folder() -> tempfile::TempDir {
 }
 
 #[test]
-fn every_command_runs() {
+fn every_command_runs_and_prints_what_the_guide_shows() {
     let chosen = std::env::var("IMPACTCHECK_GUIDE").ok();
+    let writes = chosen.as_deref() == Some("write");
+    let chosen = chosen.filter(|_| !writes);
     let language = chosen.as_ref().map_or("console".to_owned(), |kind| format!("console {kind}"));
     let folder = folder();
     // the python3 of `make setup` or of the system has SciPy
     let path = format!("{ROOT}/target/python-tools/bin:/usr/bin:{}", std::env::var("PATH").unwrap());
-    let mut commands = 0;
+    let (mut commands, mut wrong) = (0, Vec::new());
     for chapter in chapters() {
-        let text = fs::read_to_string(Path::new(ROOT).join("guide/src").join(&chapter)).unwrap();
+        let file = Path::new(ROOT).join("guide/src").join(&chapter);
+        let text = fs::read_to_string(&file).unwrap();
         if let Some(sweep) = blocks(&text, "toml").into_iter().find(|block| block.contains("[[vary]]")) {
             fs::write(folder.path().join("my-sweep.toml"), sweep).unwrap();
         }
-        let lines = |language| blocks(&text, language).into_iter().flat_map(str::lines);
-        // other blocks need the scenes that these make
-        let new = lines("console").filter(|line| chosen.is_some() && line.starts_with("$ impactcheck new "));
-        for line in new.chain(lines(&language)) {
+        let run = |line: &str| {
             let command = line.strip_prefix("$ impactcheck ").unwrap_or_else(|| panic!("{chapter}: {line}"));
             let mut run = Command::new(env!("CARGO_BIN_EXE_impactcheck"));
             run.args(command.split_whitespace()).current_dir(folder.path()).env("PATH", &path);
@@ -83,8 +142,70 @@ fn every_command_runs() {
             let status = output.status.code().unwrap();
             let ill = command == "doctor" && status == 12;
             assert!(status == 0 || ill, "{chapter}: {line}\n{}", String::from_utf8_lossy(&output.stderr));
-            commands += usize::from(chosen.is_none() || !line.starts_with("$ impactcheck new "));
+            output
+        };
+        if chosen.is_some() {
+            // other blocks need the scenes that these make
+            for part in parts(&text, "console") {
+                if let Part::Command(line, _) = part
+                    && line.starts_with("$ impactcheck new ")
+                {
+                    run(line);
+                }
+            }
+        }
+        let mut written = Vec::new();
+        for part in parts(&text, &language) {
+            let Part::Command(line, expected) = part else {
+                if let Part::Line(line) = part {
+                    written.push(line.to_owned())
+                }
+                continue;
+            };
+            let output = run(line);
+            commands += 1;
+            written.push(line.to_owned());
+            // what is installed differs from machine to machine
+            if chosen.is_some() || line == "$ impactcheck doctor" {
+                written.extend(expected.into_iter().map(str::to_owned));
+                continue;
+            }
+            let found = shown(&output, folder.path());
+            let same = found.len() == expected.len()
+                && found
+                    .iter()
+                    .zip(&expected)
+                    .all(|(found, expected)| repeatable(found) == repeatable(expected));
+            if !same {
+                wrong.push(format!("{chapter}: {line}\n{}", found.join("\n")));
+            }
+            written.extend(if same { expected.into_iter().map(str::to_owned).collect() } else { found });
+        }
+        if writes {
+            fs::write(&file, written.join("\n") + "\n").unwrap();
         }
     }
     assert!(commands >= if chosen.is_some() { 2 } else { 40 }, "{commands} commands found");
+    assert!(
+        writes || wrong.is_empty(),
+        "the guide shows another output (IMPACTCHECK_GUIDE=write writes this one):\n{}",
+        wrong.join("\n\n")
+    );
+}
+
+/// Tables that the guide copies from the reports are theirs: between `<!-- from FILE -->` and `<!-- end -->`.
+#[test]
+fn copied_tables_are_those_of_the_reports() {
+    let mut copies = 0;
+    for chapter in chapters() {
+        let text = fs::read_to_string(Path::new(ROOT).join("guide/src").join(&chapter)).unwrap();
+        for part in text.split("<!-- from ").skip(1) {
+            let (file, rest) = part.split_once(" -->").expect("a file");
+            let (copied, _) = rest.split_once("<!-- end -->").expect("an end");
+            let report = fs::read_to_string(Path::new(ROOT).join(file)).unwrap();
+            assert!(report.contains(copied.trim()), "{chapter}: the table of {file} has changed");
+            copies += 1;
+        }
+    }
+    assert!(copies > 0);
 }

@@ -2,7 +2,6 @@
 
 #[cfg(unix)]
 mod action;
-mod animations;
 mod bad_input;
 mod coverage;
 mod diff;

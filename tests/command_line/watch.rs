@@ -90,7 +90,7 @@ fn a_scene_without_reference_has_its_models_run_alone_and_ends_with_that_status(
     let watched = Watched::start(folder.path(), SCENE);
     watched.waits_for("watching mine.toml", 1);
     watched.writes(&SCENE.replacen("\"33 mm\"", "\"30 mm\"", 1));
-    watched.waits_for("reduced models alone", 1);
+    watched.waits_for("reduced models without a reference", 1);
     watched.waits_for("the paper reference of `scaled-plate-r10` is", 1);
     watched.waits_for("watching mine.toml", 2);
     assert_eq!(watched.interrupted(), Some(11));

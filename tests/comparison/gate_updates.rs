@@ -252,7 +252,7 @@ fn a_reference_that_moved_beyond_its_band_fails_until_it_is_accepted() {
         repository.gate(&["--json", "--junit", "gate.xml"])
     };
     // bands of both: sqrt(2) of one
-    assert_eq!(moved(1.3).0, 0, "within the uncertaintys");
+    assert_eq!(moved(1.3).0, 0, "within the uncertainties");
     let (status, said) = moved(1.6);
     assert_eq!(status, 10, "{said}");
     let junit = fs::read_to_string(repository.path("gate.xml")).unwrap();

@@ -109,15 +109,15 @@ fn the_page_tells_the_range_and_what_was_not_checked() {
             command: String::new(),
             attachments: Attachments::default(),
         });
-        assert!(page.contains("<h2>Range of validity</h2>"));
+        assert!(page.contains("<h2>Assumptions</h2>"));
         assert_eq!(
             page.matches("Elastic limit not checked: no yield strength given").count(),
             usize::from(!checked)
         );
         assert_eq!(page.contains("plastic flow has begun"), checked);
         // the sentence at the top says what the measures say
-        assert_eq!(page.contains("inside the range of validity"), !checked);
-        let beyond = "outside the range of validity: outer contact pressure over onset of yield is ";
+        assert_eq!(page.contains("assumptions hold"), !checked);
+        let beyond = "assumptions violated: outer contact pressure over onset of yield is ";
         assert_eq!(page.contains(beyond), checked);
         assert!(page.contains("Reference: contact pressure at the force peaks"));
     }

@@ -7,7 +7,7 @@ use impactcheck::comparison::{GateRules, Verdict};
 use impactcheck::kinds::plate_impact::CURVES;
 use impactcheck::kinds::plate_impact::PlateQuantities;
 use impactcheck::report::{
-    Report, Theme, curves_csv, figure, index_page, json, junit, markdown, scene_page, terminal,
+    Report, Theme, Width, curves_csv, figure, index_page, json, junit, markdown, scene_page, terminal,
 };
 use resvg::usvg::roxmltree::Document;
 use serde_json::Value;
@@ -206,14 +206,14 @@ fn names_with_markup_are_escaped() {
 #[test]
 fn terminal_has_a_line_per_model_and_says_what_failed() {
     let data = Data::new();
-    let text = terminal(&data.report());
+    let text = terminal(&data.report(), Width::Narrow);
     assert_eq!(text.lines().filter(|l| l.trim_start().starts_with("reference ")).count(), 1);
     assert!(
         text.lines().any(|l| l.trim_start().starts_with("B ") && l.contains("  \u{1b}[1m\u{1b}[32mpass"))
     );
     assert!(text.contains("180.0 µs") && text.contains("243.0 N"));
-    let text = terminal(&failing().report());
-    assert!(text.lines().any(|l| l.trim_start().starts_with("B: outer_force_peak: reduced 245.14")));
+    let text = terminal(&failing().report(), Width::Narrow);
+    assert!(text.lines().any(|l| l.trim_start().starts_with("B: outer_force_peak: model 245.1 N")));
 }
 
 /// A damaged reference is reported, not drawn, and nothing panics.

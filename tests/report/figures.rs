@@ -4,7 +4,7 @@ use crate::report_data::{Data, between};
 use impactcheck::kinds::plate_impact::CURVES;
 use impactcheck::plot::png;
 use impactcheck::reference::{CurveBands, FieldMesh};
-use impactcheck::report::{FigureFile, FigureFormat, Theme, figure, figure_file, printed_figure, scene_page};
+use impactcheck::report::{FigureFormat, Theme, figure, figure_file, printed_figure, scene_page};
 use impactcheck::result::Outcome;
 use resvg::usvg::roxmltree::Document;
 
@@ -151,7 +151,7 @@ fn pdf_holds_every_line_of_the_svg_on_a_page_of_its_size() {
     let data = Data::new();
     let report = data.report();
     let scene = &report.scenes[0];
-    let pdf = figure_file(scene, 85.0, FigureFile::Curves(FigureFormat::Pdf)).unwrap();
+    let pdf = figure_file(scene, 85.0, FigureFormat::Pdf).unwrap();
     let find = |what: &[u8], from: usize| {
         from + pdf[from..].windows(what.len()).position(|w| w == what).unwrap_or_else(|| panic!("{what:?}"))
     };
@@ -192,7 +192,7 @@ fn text_of_a_pdf_can_be_searched() {
     let report = data.report();
     let scene = &report.scenes[0];
     for width in [85.0, 175.0] {
-        let pdf = figure_file(scene, width, FigureFile::Curves(FigureFormat::Pdf)).unwrap();
+        let pdf = figure_file(scene, width, FigureFormat::Pdf).unwrap();
         let streams = streams(&pdf);
         let (content, cmap) = (&streams[0], &streams[2]);
         // ToUnicode: <glyph> <text in UTF-16>
@@ -299,7 +299,7 @@ fn streams(pdf: &[u8]) -> Vec<Vec<u8>> {
 fn png_for_papers_states_its_resolution() {
     let data = Data::new();
     let report = data.report();
-    let bytes = figure_file(&report.scenes[0], 85.0, FigureFile::Curves(FigureFormat::Png)).unwrap();
+    let bytes = figure_file(&report.scenes[0], 85.0, FigureFormat::Png).unwrap();
     let reader = ::png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
     let info = reader.info();
     // 85 mm at 600 dots per inch
@@ -346,7 +346,6 @@ fn mesh_and_stress_are_shown_where_there_are_any() {
         bodies: Vec::new(),
         von_mises: None,
         plastic_strain: None,
-        displacement: None,
     };
     for (body, (z, radius, height)) in
         [(1e-3, 1e-2, 2e-2), (-1e-3, 3e-2, 2e-3), (-2.1e-2, 1e-2, 2e-2)].into_iter().enumerate()

@@ -55,7 +55,6 @@ fn dents_of_the_first_impacts_and_the_last_are_drawn_with_the_plastic_strain() {
         bodies: vec![1],
         von_mises: None,
         plastic_strain: Some(vec![0.04]),
-        displacement: None,
     });
     let page = section(&scene_page(scene));
     assert_eq!(page.matches("<image").count(), 2);

@@ -120,7 +120,7 @@ fn the_sentence_says_what_is_near_by_and_what_is_not() {
         let start = format!("<li data-model=\"{model}\">");
         (between(&page, &start, "</li>").to_owned(), place)
     };
-    for (model, starts) in [("B", "off by up to "), ("C", "inside the validated range: within ")] {
+    for (model, starts) in [("B", "differs by up to "), ("C", "agrees within ")] {
         let (told, here) = sentence(known.clone(), model);
         let hash = &known.iter().find(|v| v.scene == "scaled-plate-r10").unwrap().scene_hash;
         let near: Vec<f64> = known
@@ -129,7 +129,7 @@ fn the_sentence_says_what_is_near_by_and_what_is_not() {
             .filter(|v| here.factor(&v.place.unwrap()) <= 2.0)
             .map(|v| v.worst().unwrap().relative().abs())
             .collect();
-        let ending = format!(" % in {} validated scenes near by", near.len());
+        let ending = format!(" % in {} similar scenes", near.len());
         let (before, _) = told.split_once(&ending).unwrap_or_else(|| panic!("{told}"));
         let (_, percent) = before.rsplit_once(starts).unwrap_or_else(|| panic!("{told}"));
         let (percent, worst) = (percent.parse::<f64>().unwrap(), near.iter().fold(0.0_f64, |a, b| a.max(*b)));
@@ -140,12 +140,12 @@ fn the_sentence_says_what_is_near_by_and_what_is_not() {
     let far: Vec<Validation> =
         known.iter().filter(|v| here.factor(&v.place.unwrap()) > 2.0).cloned().collect();
     let (told, _) = sentence(far.clone(), "C");
-    assert!(told.contains("no validated scene near by: nearest ") && told.contains(" there"), "{told}");
+    assert!(told.contains("no similar scene was compared; nearest "), "{told}");
     let patch = |v: &Validation| v.place.unwrap().patch_over_thickness;
     let narrow: Vec<Validation> = far.into_iter().filter(|v| patch(v) < here.patch_over_thickness).collect();
     let (told, _) = sentence(narrow, "C");
     assert!(
-        told.contains("outside the validated range: patch/thickness 0.153, validated up to 0.15"),
+        told.contains("no similar scene was compared (patch/thickness 0.153, compared up to 0.15"),
         "{told}"
     );
     let (told, _) = sentence(Vec::new(), "C");

@@ -164,7 +164,7 @@ fn report_shows_the_seat_among_the_scenes() {
     assert!(document["scenes"][0]["models"][0]["summary"]["sphere_angle"].is_f64());
     assert!(report::junit(&report).expect("JUnit").contains("classname=\"seal-seat-improved.C\""));
     assert!(report::markdown(&report).contains("## seal-seat-improved: pass"));
-    assert!(report::terminal(&report).contains(&format!("{angle:+.2}°")));
+    assert!(report::terminal(&report, report::Width::Narrow).contains(&format!("{angle:+.2}°")));
     let folder = tempfile::tempdir().expect("folder");
     let written = report::write(&report, folder.path()).expect("files");
     for name in

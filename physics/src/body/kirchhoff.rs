@@ -155,15 +155,6 @@ pub fn modes(plate: &Plate, modes: usize) -> Result<ModalBody> {
     Ok(UnitPlate::new(plate.edge, plate.material.poisson_ratio, modes)?.scale(plate))
 }
 
-/// Mass-normalised deflections of `plate` at `radii` in m in its lowest `modes` elastic modes (and before them in the
-/// rigid one of a free plate), kg^(-1/2); positive at the centre, as in [`modes`]. Shape (modes, radii).
-///
-/// # Errors
-/// As [`UnitPlate::new`].
-pub fn shapes(plate: &Plate, modes: usize, radii: &[f64]) -> Result<Vec<Vec<f64>>> {
-    Ok(UnitPlate::new(plate.edge, plate.material.poisson_ratio, modes)?.shapes(plate, radii))
-}
-
 /// The unit plates that a series of impacts has needed so far; shared by its threads.
 #[derive(Debug, Default)]
 pub struct UnitPlates(Kept<UnitPlate>);

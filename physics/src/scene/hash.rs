@@ -8,7 +8,7 @@ impl Scene {
     /// SHA-256 (hexadecimal) of what is physical in the scene: bodies, motion, fluid, length of the run.
     ///
     /// Name, description, names of materials and the yield strengths of those that stay elastic, tolerances and the settings of models and
-    /// reference are left out: two scenes with the same hash have the same exact solution.
+    /// reference are omitted: two scenes with the same hash have the same exact solution.
     pub fn hash(&self) -> String {
         let mut physical = json!({ "setup": self.setup, "run": self.run });
         drop_inelastic(&mut physical);

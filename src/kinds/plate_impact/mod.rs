@@ -7,12 +7,12 @@ pub use impactcheck_physics::kinds::plate_impact::*;
 
 use super::{Approach, ClosedForm, Feature, Place, Starter, Use, Value};
 use crate::error::Result;
-use crate::result::{History, Summary};
-use crate::scene::{Geometry, Model, Scene, Shape};
+use crate::result::Summary;
+use crate::scene::{Geometry, Scene, Shape};
 
 impl super::Kind for Kind {
     fn serves(&self, purpose: Use) -> bool {
-        matches!(purpose, Use::Records | Use::Samples | Use::Animation)
+        matches!(purpose, Use::Records | Use::Samples)
     }
 
     fn starter(&self) -> Starter {
@@ -62,20 +62,6 @@ impl super::Kind for Kind {
 
     fn approach(&self, scene: &Scene) -> Result<Approach> {
         scene.plate_impact().map(approach)
-    }
-
-    fn deflection(
-        &self,
-        scene: &Scene,
-        model: (Model, Option<usize>),
-        history: &History,
-        radii: usize,
-        times: &[f64],
-    ) -> Result<(Vec<f64>, Vec<Vec<f64>>)> {
-        let radius = scene.plate_impact()?.plate.radius;
-        let radii: Vec<f64> = (0..radii).map(|k| radius * k as f64 / (radii - 1) as f64).collect();
-        let deflection = deflection::deflection(scene, model, history, &radii, times)?;
-        Ok((radii, deflection))
     }
 
     fn starts_in_contact(&self, scene: &Scene) -> bool {

@@ -3,7 +3,6 @@
 mod plate_impact;
 mod seal_seat;
 
-pub use plate_impact::{Animation, film};
 pub use seal_seat::{Arrow, seat_picture};
 
 use crate::kinds::{self, KINDS};

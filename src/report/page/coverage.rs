@@ -55,7 +55,7 @@ fn told(coverage: &Coverage) -> String {
 fn table(coverage: &Coverage, pages: &[&str]) -> Markup {
     html! { table.coverage {
         thead {
-            tr { td {} th.left scope="colgroup" colspan="3" { "reduced model" } th.left scope="colgroup" colspan="4" { "held against" } }
+            tr { td {} th.left scope="colgroup" colspan="3" { "reduced model" } th.left scope="colgroup" colspan="4" { "compared with" } }
             tr {
                 th.left scope="col" { "feature" }
                 @for heading in MODELS.iter().chain(&PARTNERS) { th.left scope="col" { (heading) } }

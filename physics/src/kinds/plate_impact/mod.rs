@@ -5,7 +5,6 @@ pub mod choice;
 mod closed_form;
 pub mod closed_forms;
 mod continua;
-pub mod deflection;
 pub mod errors;
 mod joined;
 mod laws;

@@ -2,7 +2,7 @@
 //!
 //! Models A and B are held against Kirchhoff's plate with all its modes. Model C is held against the plate as an elastic layer
 //! with more modes ([`Trials`]), which knows bending far from the rim, and against itself with fewer modes, which knows the
-//! rest. A fluid's film and drag are left out of both.
+//! rest. A fluid's film and drag are omitted of both.
 
 use super::joined::off_centre_system;
 use super::results::quantities;

@@ -34,7 +34,7 @@ pub const STUDIES: [Entry; 19] = [
     Entry::new("test-bed", test_bed::run, "Section 3.4.2, Figs. 12 and 13: whether its statements survive the tolerances of a test bed")
         .panels(&test_bed::PANELS).with_models(),
     Entry::new("flight", |_, note| flight::run(note), "Sections 5.1.1 to 5.1.3: flights and shocks of the sphere against MuJoCo, statements on the rocker"),
-    Entry::new("valve", |_, note| valve::run(note), "Section 5: both demonstrators from the voltage to the seat, with the scatter of a workshop")
+    Entry::new("valve", |_, note| valve::run(note), "Section 5: both demonstrators from the voltage to the seat, with workshop tolerances")
         .panels(&valve::PANELS),
     Entry::new("fluid", fluid::run, "Section 4.2.5: squeeze film, plate damping, added mass and drag, alone and together")
         .panels(&fluid::PANELS).with_models(),

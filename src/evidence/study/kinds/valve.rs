@@ -301,9 +301,9 @@ pub fn run(note: &mut Note) -> Result<Study> {
         format!(
             "Both demonstrators of section 5, from the voltage on the bender to the seat that the sphere comes to rest in: the \
              example scenes rocker-flight and valve-flight, whose actuators have their speeds at {NOMINAL} V. Spring, travel, friction and \
-             chamber are the examples', the paper gives none. Scatter: {DRAWN} valves with plausible tolerances of speed, masses, materials \
+             chamber are those of the examples, the paper specifies none. {DRAWN} valves have plausible tolerances of speed, masses, materials \
              and thickness. The margin is to the nearest launch \
-             that ends in another seat, in standard deviations of its speed, beside the {LONG_TERM} that 8 stops in 2 million shifts are worth."
+             that ends in another seat, in standard deviations of its speed. 8 failures in 2 million operations correspond to {LONG_TERM}."
         ),
         "demonstrator, voltage [V], actuator_speed [m/s], electrical_energy [J], \
          actuator_energy [J], sphere_energy [J], launch_speed [m/s], launch_angle [rad], \

@@ -1,9 +1,6 @@
 //! How a plate impact is shown.
 
-mod animation;
 mod picture;
-
-pub use animation::{Animation, film};
 
 use super::{Drawing, Presentation};
 use crate::reference::Stored;
@@ -101,7 +98,6 @@ impl Presentation for Plate {
         let measured = section::measured::measured_html(report);
         let dents = section::dents::dents_html(report).unwrap_or_else(|error| html! { p { (error) } });
         vec![
-            Section::new("movement", "The impact moving", section::animation::animation_html(report)),
             Section::new("impacts", "Impacts in series", section::impacts::impacts_html(report)),
             Section::new("landing", "Landing", section::flight::flights_html(report)),
             Section::new("dents", "Dents", dents),

@@ -8,13 +8,13 @@ pub use picture::{Arrow, seat_picture};
 use super::{Drawing, Presentation};
 use crate::format::{model_name, prefixed, significant, with_unit};
 use crate::kinds::seal_seat::SeatQuantities;
-use crate::project::project_root;
 use crate::reference::Stored;
 use crate::report::attachments::instant_of_peak;
 use crate::report::figure::geometry::PanelOf;
 use crate::report::page::html::{named, scrolled};
 use crate::report::page::section::Section;
 use crate::report::page::section::flight;
+use crate::report::page::section::mesh::paraview;
 use crate::report::run_times::marked;
 use crate::report::summary_column::{SummaryColumn, degrees};
 use crate::report::{Attachments, SceneReport, Theme};
@@ -22,10 +22,6 @@ use crate::result::Summary;
 use crate::scene::Scene;
 use maud::{Markup, PreEscaped, html};
 use picture::arrow_legend;
-use std::path::{Path, PathBuf};
-
-/// Name of the series of fields in the folder of a reference.
-const ANIMATION: &str = "stress.pvd";
 
 pub(super) struct Seat;
 
@@ -84,14 +80,9 @@ impl Presentation for Seat {
 
     fn attachments(&self, stored: &Stored) -> Attachments {
         let peak = instant_of_peak(&stored.outcome.history, "sphere_force");
-        let animation = Some(stored.folder.join(ANIMATION)).filter(|file| file.is_file());
-        // the same on every machine, so that equal results give equal reports
-        let root = project_root().unwrap_or_default();
-        let in_project = |file: PathBuf| file.strip_prefix(&root).map(Path::to_owned).unwrap_or(file);
         Attachments {
             section: stored.section().ok(),
             section_stress: stored.section_near(peak).ok().flatten(),
-            animation: animation.map(in_project),
             ..Attachments::default()
         }
     }
@@ -126,10 +117,7 @@ impl Presentation for Seat {
     fn mesh(&self, report: &SceneReport) -> Markup {
         html! {
             (mesh::mesh_html(report))
-            @if let Some(animation) = &report.attachments.animation {
-                p { "Fields of the stored solution, for ParaView (" code { "impactcheck reference SCENE --fields 40" }
-                    " makes a series): " code { (animation.display()) } }
-            }
+            (paraview(report))
         }
     }
 }

@@ -141,7 +141,7 @@ fn validation(measured: &Measured) -> Option<Rows> {
 }
 
 /// What the columns of [`validation`] are.
-const VALIDATION: &str = "Efficiency with the uncertain inputs of the scene: E is the computed value minus the mean of the measured ones;     u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009). Area: between the distribution of the partner's efficiency and that of the measured ones     (Ferson, Oberkampf & Ginzburg 2008), and its parts where the partner's is larger and smaller.";
+const VALIDATION: &str = "Efficiency with the uncertain inputs of the scene: E is the computed value minus the mean of the measured ones;     u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009). Area: between the distribution of the computed efficiency and that of the measured ones     (Ferson, Oberkampf & Ginzburg 2008), and its parts where the computed one is larger and smaller.";
 
 /// Mean and scatter in a sentence.
 pub(crate) fn sentence(measured: &Measured) -> String {

@@ -57,11 +57,19 @@ pub(crate) fn mesh_html(report: &SceneReport) -> Result<Markup> {
                     "law for half-spaces would have it." }
             }
         }
-        @if report.attachments.film.is_none() {
-            p.soft { "The impact moving, with the stress over time: " code { (crate::report::fields_command(report.scene)) }
-                " stores the fields, and the next comparison shows it." }
-        }
+        (paraview(report))
     })
+}
+
+/// Where the fields of the reference are, or the command that stores them.
+pub(crate) fn paraview(report: &SceneReport) -> Markup {
+    html! {
+        p.soft {
+            "The impact over time in ParaView: "
+            @if let Some(fields) = &report.attachments.fields { code { (fields.display()) } "; " }
+            code { "impactcheck reference " (report.scene.name) " --fields 40" } " stores fields at 40 instants."
+        }
+    }
 }
 
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {

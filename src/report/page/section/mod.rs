@@ -1,7 +1,6 @@
 //! A section of a scene's page, and the list of them.
 
 pub(crate) mod acceptance;
-pub(crate) mod animation;
 pub(crate) mod budget;
 pub(crate) mod dents;
 pub(crate) mod discrepancy;

@@ -193,7 +193,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
         "actuators",
         format!(
             "Section 2.2 of the paper: energy of the inner sphere behind the membrane of section 4.3, struck by a piezo stack (several time constants of its drive), the \
-             piezo bender and a small lift magnet, over where the plate stands, model {model}. A stack's strokes of micrometres forgive no tolerance \
+             piezo bender and a small lift magnet, over the position of the plate, model {model}. A stack's strokes of micrometres forgive no tolerance \
              (2.2.1), the bender those of a wide range (2.2.2). Stack and magnet are of a usual class, the paper gives no data of either."
         ),
         "actuator, gap [m], inner_energy [J], inner_energy_over_gap_0, electrical_energy [J], \

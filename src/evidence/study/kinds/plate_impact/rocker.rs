@@ -125,7 +125,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
         "rocker",
         "Section 4.3 of the paper: titanium membrane, inner sphere of sapphire, struck by an equal sphere \
                       and by the piezo bender at 550 mm/s. The beam has the measured frequency and stiffness, and the \
-                      length at which 4 N mm give that speed. The paper leaves open how fast the bender's moment goes: at \
+                      length at which 4 N mm give that speed. The paper does not specify how fast the bender's moment decays: at \
                       once, higher modes take a quarter of the strain energy and slow the tip where it strikes, and the paper's \
                       efficiencies are out of reach; with a discharge over 0.1 to 0.2 ms, shorter than the mechanical time \
                       constant of 0.32 ms as section 2.2.2 asks, they are met. The value for the claims is fitted.",

@@ -108,7 +108,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
         "shakedown",
         format!(
             "Section 3.4.2 and Fig. 13 of the paper: efficiency of repeated impacts, model {model}, all bodies of steel with a \
-             hardening of E/100. The paper does not tell its yield strength, so several are shown; it names a low start, a \
+             hardening of E/100. The paper does not specify the yield strength, so several are shown; it names a low start, a \
              rise to a steady state, and that this is often above the efficiency without yielding."
         ),
         "spheres, case, impact, efficiency, efficiency_band",

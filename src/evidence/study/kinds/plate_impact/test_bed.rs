@@ -78,9 +78,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
     Ok(Study::new(
         "test-bed",
         format!(
-            "Section 3.4.2 of the paper under scatter: {DRAWN} test beds whose plate, spheres, steel and speed are off by plausible \
-             tolerances, and whose steel yields anywhere from 350 to 1000 MPa, since the paper names none of it; model {model}. Each \
-             statement is held against each test bed."
+            "Section 3.4.2 of the paper with uncertain inputs: {DRAWN} test beds whose plate, spheres, steel and speed vary within plausible tolerances, and whose steel yields anywhere from 350 to 1000 MPa, since the paper names none of it; model {model}. Each statement is checked on each test bed."
         ),
         "spheres, case, yield_strength [Pa], efficiency",
         rows,
@@ -133,7 +131,7 @@ fn claims_of(spheres: &str, found: &[TestBedResult]) -> Vec<Claim> {
     let squares = found.iter().map(|one| (one.elastic - mean).powi(2)).sum::<f64>();
     let scatter = (squares / (found.len() - 1) as f64).sqrt();
     let below = "the first impact is below the efficiency without yielding";
-    let clearly = "and by more than twice what tolerances scatter that, so that Fig. 12 shows it";
+    let clearly = "and by more than twice its standard deviation from tolerances, so that Fig. 12 shows it";
     let nearer = "the steady state is nearer to the efficiency without yielding than the first impact";
     vec![
         share(below, &|one| one.first < one.elastic),

@@ -59,7 +59,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
     }
     Ok(Study::new(
         "seal-seat-cost",
-        "Run times of the reduced seal seat (16 modes or as the scene says, no cache, its error estimate included) \
+        "Run times of the reduced seal seat (16 modes or the scene's, no cache, its error estimate included) \
              and of the explicit finite elements' time loop on the same mesh, measured one after the other.",
         "design, dofs, reference_seconds [s], setup_seconds [s], reduced_seconds [s], ratio, \
          angle_difference [rad], speed_difference",

@@ -169,14 +169,14 @@ fn of_flights(compared: &[ComparedFlight]) -> Vec<Claim> {
         ),
         Claim::new("share of all flights with another seat".into(), "1", None, Some(1.0 - share), 0.1),
         Claim::new(
-            format!("first touches of {touches} flights: largest distance"),
+            format!("first contacts of {touches} flights: largest distance"),
             "m",
             None,
             Some(largest(0)),
             FIRST_TOUCH[0],
         ),
         Claim::new(
-            format!("first touches of {touches} flights: largest difference in time"),
+            format!("first contacts of {touches} flights: largest difference in time"),
             "s",
             None,
             Some(largest(1)),
@@ -335,7 +335,8 @@ fn rocker() -> Result<Vec<Claim>> {
     let (upwards, weaker) = (seats(0.0, Some(against), 1.0)?, seats(0.0, Some(against), 0.5)?);
     Ok(vec![
         Claim::new(
-            "5.1.1, gravity against the shift: too weak a blow and the sphere falls back (1 = yes)".into(),
+            "5.1.1, gravity against the shift: after too weak an impact the sphere falls back (1 = yes)"
+                .into(),
             "1",
             Some(1.0),
             yes(upwards[0] == Seat::Same && least(&upwards) > least(&cured)),

@@ -105,12 +105,11 @@ pub fn check(extent: &Extent, store: &Store, note: &mut Note) -> Result<Study> {
         "auto",
         format!(
             "The model that auto chooses for a tolerance, its estimated and its true error (the largest of efficiency, final \
-             velocity of the outer body and both force peaks), and its cost against the cheapest setting that meets the tolerance. \
-             {known} scenes against their stored finite-element reference ({}; those with 95 % bands above 1 % are left \
-             out), {} random ones over the permitted range (seed {seed}) against model C with so many modes that half as many change \
-             it by less than a third of the tolerance. Where no model is estimated to meet the tolerance (promised = 0), auto says so; \
-             true_error is missing where no promise is made or no converged solution is known. Costs are wall times on this machine, of {costed} random \
-             scenes.",
+             velocity of the outer body and both peak forces), and its cost over that of the least expensive setting within the tolerance. \
+             {known} scenes are compared with their stored finite-element reference ({}; without those whose uncertainty is above 1 %). {} random \
+             scenes over the permitted range (seed {seed}) are compared with model C, converged to a third of the tolerance by doubling the modes. \
+             promised = 0: auto states that no model is within the tolerance. true_error is missing there, and where no converged solution is \
+             known. Costs are wall times on this machine, of {costed} random scenes.",
             if names.is_empty() { "none".to_owned() } else { names.join(", ") },
             cases.len() - known,
         ),
