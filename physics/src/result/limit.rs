@@ -132,16 +132,18 @@ impl Limit {
         ];
         let theory = theories.iter().find(|theory| self.measure.ends_with(theory.measure))?;
         let measure = self.measure.replace("_over_", " / ").replace('_', " ");
-        let value = two_digits(self.value);
-        self.is_exceeded()
-            .then(|| format!("{measure} is {value}, above its limit of {}: {}", self.bound, theory.beyond))
+        self.is_exceeded().then(|| {
+            let value = two_digits(self.value);
+            format!("{measure} is {value}, above its limit of {}: {}", self.bound, theory.beyond)
+        })
     }
 }
 
 /// `value` with two significant digits.
 fn two_digits(value: f64) -> String {
-    let decimals = 1.0 - value.abs().log10().floor();
-    if decimals >= 0.0 { format!("{value:.*}", decimals as usize) } else { format!("{value:.0}") }
+    // of 0, and of what is not finite, the logarithm is not
+    let decimals = Some(1.0 - value.abs().log10().floor()).filter(|decimals| decimals.is_finite());
+    format!("{value:.*}", decimals.unwrap_or(1.0).max(0.0) as usize)
 }
 
 #[cfg(test)]
