@@ -1,8 +1,5 @@
 //! Formats of tables in files.
 
-use crate::error::{Error, Result};
-use std::path::Path;
-
 /// Format of a table, as its file's ending says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TableFormat {
@@ -19,15 +16,6 @@ impl TableFormat {
             TableFormat::Csv => "csv",
             TableFormat::Parquet => "parquet",
         }
-    }
-
-    /// The format that the ending of `file` names.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] if there is none of that name.
-    pub fn of(file: &Path) -> Result<Self> {
-        let ending = file.extension().unwrap_or_default().to_string_lossy();
-        ending.parse().map_err(|reason| Error::Usage(format!("{}: {reason}", file.display())))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::compare_arguments::Arguments;
 use super::comparison_job::Job;
-use super::{Context, compare_inputs, kinds};
+use super::{Context, compare_inputs, kinds, stored_references};
 use crate::error::{Error, ExitStatus, Result};
 use crate::report;
 use clap::Args;
@@ -21,7 +21,11 @@ pub struct OwnArguments {
 
 /// Compares, once or whenever a file changes.
 pub fn run(context: &Context, OwnArguments { shared, watch }: OwnArguments) -> Result<ExitStatus> {
-    let arguments = &shared.with_tables_measured();
+    let mut arguments = shared.with_tables_measured();
+    if arguments.resolution.is_none() && !arguments.compute {
+        arguments.resolution = stored_references::only_stored(context, &arguments.scenes)?;
+    }
+    let arguments = &arguments;
     if !watch {
         return once(context, arguments);
     }

@@ -22,10 +22,10 @@ pub struct Arguments {
     /// [default: 1%]
     #[arg(long, value_parser = asked_model::tolerance)]
     pub(super) tolerance: Option<f64>,
-    /// Resolution of the reference: coarse, paper (standard), fine, or the value given to --target-error, such as
-    /// 0.2%
-    #[arg(long, default_value = "paper")]
-    pub(super) resolution: Resolution,
+    /// Resolution of the reference: coarse, paper (standard), fine, or the value given to --target-error, such as 0.2%
+    /// [default: paper; `compare` takes the finest stored one of a scene that has no other]
+    #[arg(long)]
+    pub(super) resolution: Option<Resolution>,
     /// Compute references that are missing or out of date (needs FEniCSx)
     #[arg(long)]
     pub(super) compute: bool,
@@ -63,6 +63,10 @@ pub struct Arguments {
 }
 
 impl Arguments {
+    pub(super) fn resolution(&self) -> Resolution {
+        self.resolution.unwrap_or(Resolution::Paper)
+    }
+
     /// Tables among the scenes belong to `--measured`, whose files a shell lists with spaces between them.
     pub(super) fn with_tables_measured(mut self) -> Self {
         if !self.measured.is_empty() {

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::kinds::{self, Use};
 use crate::measured::Record;
 use crate::project::project_root;
-use crate::report::{FIGURE_WIDTHS, FigureFormat};
+use crate::report::{Export, FIGURE_WIDTHS, FigureFile, figure_format};
 use crate::scene::{self, Scene};
 use std::path::{Path, PathBuf};
 
@@ -50,9 +50,9 @@ pub(super) fn named_apart(scenes: &[(PathBuf, Scene)]) -> Result<()> {
 pub(super) fn figures(
     file: Option<&PathBuf>,
     scenes: &[(PathBuf, Scene)],
-) -> Result<Vec<(PathBuf, FigureFormat)>> {
+) -> Result<Vec<(PathBuf, &'static dyn Export<FigureFile>)>> {
     let Some(file) = file else { return Ok(Vec::new()) };
-    let format = FigureFormat::of(file)?;
+    let format = figure_format(file)?;
     if scenes.len() == 1 {
         return Ok(vec![(file.clone(), format)]);
     }

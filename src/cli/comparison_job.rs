@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::file::write_file;
 use crate::measured::{self, Record};
 use crate::reference::{Resolution, Stored};
-use crate::report::{self, Attachments, Cost, FigureFormat, Report, SceneReport, Width};
+use crate::report::{self, Attachments, Cost, Export, FigureFile, Report, SceneReport, Width};
 use crate::result::Outcome;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -34,7 +34,7 @@ pub(super) struct Job<'a> {
     /// Scene files, and what they say.
     pub(super) scenes: Vec<(PathBuf, Scene)>,
     records: Vec<Record>,
-    figures: Vec<(PathBuf, FigureFormat)>,
+    figures: Vec<(PathBuf, &'static dyn Export<FigureFile>)>,
 }
 
 /// Reference and reduced models of one scene.
@@ -104,7 +104,7 @@ impl<'a> Job<'a> {
     }
 
     pub(super) fn resolution(&self) -> Resolution {
-        self.arguments.resolution
+        self.arguments.resolution()
     }
 
     pub(super) fn out(&self) -> &Path {
@@ -113,7 +113,7 @@ impl<'a> Job<'a> {
 
     /// References from the store (or computed), and the reduced models' runs, of every scene.
     pub(super) fn results(&self, context: &Context) -> Result<Vec<Results>> {
-        let references = look_up(context, self.arguments.resolution, self.arguments.compute, &self.scenes)?;
+        let references = look_up(context, self.resolution(), self.arguments.compute, &self.scenes)?;
         for stored in &references {
             tell_reused(context, stored);
         }
@@ -238,7 +238,7 @@ impl<'a> Job<'a> {
 
     /// The command line that compares `scene` in the same way.
     fn command(&self, scene: &Scene) -> String {
-        let Arguments { scenes, models, resolution, .. } = self.arguments;
+        let Arguments { scenes, models, .. } = self.arguments;
         let place = self.scenes.iter().position(|(_, other)| other.name == scene.name);
         let named = place.and_then(|k| scenes.get(k)).unwrap_or(&scene.name);
         let mut command = format!("impactcheck compare {named}");
@@ -252,8 +252,8 @@ impl<'a> Job<'a> {
         if self.arguments.reference_check {
             command += " --reference-check";
         }
-        if *resolution != Resolution::Paper {
-            command += &format!(" --resolution {}", resolution.argument());
+        if self.resolution() != Resolution::Paper {
+            command += &format!(" --resolution {}", self.resolution().argument());
         }
         let measured = self.arguments.measured.iter().map(|file| format!(" --measured {}", file.display()));
         command + &measured.collect::<String>()
@@ -299,7 +299,8 @@ impl<'a> Job<'a> {
     pub(super) fn write(&self, report: &Report) -> Result<()> {
         report::write(report, &self.arguments.out)?;
         for (scene, (file, format)) in report.scenes.iter().zip(&self.figures) {
-            write_file(file, &report::figure_file(scene, self.arguments.figure_width, *format)?)?;
+            let svg = report::printed_figure(scene, self.arguments.figure_width);
+            write_file(file, &format.bytes(&FigureFile { title: scene.scene.name.clone(), svg })?)?;
         }
         Ok(())
     }

@@ -90,7 +90,7 @@ pub fn compare(scenes: Vec<Placed>, asked: Comparing) -> Result<Compared> {
     arguments.speed = speed.unwrap_or(arguments.speed);
     arguments.measured = measured;
     arguments.permission.allow_external = allow_external;
-    (arguments.models, arguments.resolution, arguments.compute) = (models, resolution, compute);
+    (arguments.models, arguments.resolution, arguments.compute) = (models, Some(resolution), compute);
     arguments.out = out.unwrap_or_default();
     let job = if scenes.is_empty() { Job::read(&QUIET, &arguments)? } else { Job::of(&arguments, scenes)? };
     if is_written {

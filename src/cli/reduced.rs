@@ -6,9 +6,8 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::format::{prefixed, with_unit};
 use crate::kinds::SharedBodies;
-use crate::report;
+use crate::report::{self, history_format};
 use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Sideways, Summary};
-use crate::table_format::TableFormat;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -32,7 +31,7 @@ pub struct Arguments {
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     if let Some(file) = &arguments.history {
         // refused before anything is computed
-        TableFormat::of(file)?;
+        history_format(file)?;
     }
     if let Some(file) =
         arguments.page.as_ref().filter(|file| file.extension().is_none_or(|kind| kind != "html"))
@@ -55,7 +54,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
 fn finish(context: &Context, arguments: &Arguments, outcome: &Outcome) -> Result<ExitStatus> {
     let Outcome { summary, history } = outcome;
     if let Some(path) = &arguments.history {
-        write_file(path, &report::history_file(history, TableFormat::of(path)?)?)?;
+        write_file(path, &history_format(path)?.bytes(history)?)?;
         context.note(format_args!("history of {} samples in {}", history.len(), path.display()));
     }
     for warning in &summary.warnings {

@@ -192,10 +192,10 @@ pub(super) fn require_sound(scene: &Scene, stored: &Stored) -> Result<()> {
 
 /// What is wrong with what the store has.
 pub fn problem(scene: &Scene, resolution: Resolution, lookup: &Lookup) -> String {
-    let which = format!("the {} reference of `{}`", resolution.argument(), scene.name);
+    let which = format!("the reference of `{}` (resolution `{}`)", scene.name, resolution.argument());
     match lookup {
         Lookup::Found(_) => format!("{which} is there"),
-        Lookup::Missing => format!("{which} is missing"),
+        Lookup::Missing => format!("{which} is missing: it is not computed yet"),
         Lookup::Stale { reason } => format!("{which} is stale: {reason}"),
         Lookup::Damaged { file, reason } => format!("{which} is damaged: {}: {reason}", file.display()),
     }

@@ -23,7 +23,7 @@ pub(super) fn independent(
     arguments: &Arguments,
 ) -> Result<Option<Stored>> {
     let taken = kinds::of(scene).calculix_takes(scene);
-    let Some(resolution) = arguments.resolution.by_calculix().filter(|_| taken) else { return Ok(None) };
+    let Some(resolution) = arguments.resolution().by_calculix().filter(|_| taken) else { return Ok(None) };
     if !arguments.reference_check {
         let found = context.store().for_scene_in(file).find_here_or_shipped(scene, resolution).found();
         return Ok(found.filter(|stored| require_sound(scene, stored).is_ok()));

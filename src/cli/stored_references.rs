@@ -1,6 +1,6 @@
 //! The stored references of several scenes, for a comparison.
 
-use super::{Context, reference};
+use super::{Context, compare_inputs, reference};
 use crate::error::{Error, Result};
 use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
 use crate::scene::{self, Scene};
@@ -48,6 +48,27 @@ pub(super) fn look_up(
     Ok(found)
 }
 
+/// The finest resolution that is stored of the only one of `scenes` if it has none at the default one; that it is used is printed.
+///
+/// # Errors
+/// Those of reading the scenes.
+pub(super) fn only_stored(context: &Context, scenes: &[String]) -> Result<Option<Resolution>> {
+    let [(file, scene)] = &compare_inputs::scenes(scenes)?[..] else { return Ok(None) };
+    let store = context.store().for_scene_in(file);
+    if !matches!(store.find_here_or_shipped(scene, Resolution::Paper), Lookup::Missing) {
+        return Ok(None);
+    }
+    let finest = store.resolutions(scene).pop();
+    if let Some(resolution) = finest {
+        let argument = resolution.argument();
+        context.note(format_args!(
+            "{}: the finest stored reference is `{argument}` (as --resolution {argument})",
+            scene.name
+        ));
+    }
+    Ok(finest)
+}
+
 /// Where a reference comes from: that it is not from the store the caller named is always said.
 pub(super) fn tell_reused(context: &Context, stored: &Stored) {
     let scene = &stored.outcome.summary.scene;
@@ -76,7 +97,7 @@ fn advice(context: &Context, file: &Path, scene: &Scene, resolution: Resolution,
             format!("take one in with {}", command(&format!("import {named} --from FILE")))
         }
         Lookup::Damaged { .. } => format!("compute it again with {}", command(&format!("{own} --fresh"))),
-        _ => format!("compute it with {} (seconds to minutes), or add `--compute`", command(&own)),
+        _ => format!("compute it (seconds to minutes) with {}, or add `--compute`", command(&own)),
     }
 }
 

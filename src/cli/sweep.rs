@@ -5,8 +5,7 @@ use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::report;
-use crate::report::FigureFormat;
-use crate::report::{Drawn, sweep_figure};
+use crate::report::{Drawn, FigureFile, figure_format, sweep_figure};
 use crate::sweep::{self, Plan, Shard, Table};
 use crate::table_format::TableFormat;
 use clap::Args;
@@ -85,7 +84,7 @@ impl Arguments {
         let plan = Plan::read(&self.file)?;
         self.drawn(&plan)?;
         if let Some(file) = &self.figure {
-            FigureFormat::of(file)?;
+            figure_format(file)?;
             if !is_drawn(&plan) {
                 return Err(Error::Usage(format!(
                     "--figure {}: {} parameters vary over {} points; one or two can be drawn, over {MOST_DRAWN} points at most",
@@ -116,7 +115,10 @@ fn draw(context: &Context, arguments: &Arguments, plan: &Plan, dir: &Path, table
     write_file(&path, svg.as_bytes())?;
     context.note(format_args!("wrote {}", path.display()));
     match &arguments.figure {
-        Some(file) => write_file(file, &FigureFormat::of(file)?.of_svg(svg, plan.scene())?),
+        Some(file) => {
+            let figure = FigureFile { title: plan.scene().to_owned(), svg };
+            write_file(file, &figure_format(file)?.bytes(&figure)?)
+        }
         None => Ok(()),
     }
 }

@@ -7,7 +7,7 @@ use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::format::{percent, prefixed, with_unit};
 use crate::kinds::{KINDS, Use};
-use crate::report::{self, FigureFormat};
+use crate::report::{self, FigureFile, figure_format};
 use crate::scene::{self, Model, Template, suggestion};
 use crate::table_format::TableFormat;
 use crate::uncertainty::{QuantityScatter, Request, Samples, Scatter, Share, study, uncertainty_of};
@@ -87,7 +87,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let template = Template::read(&file)?;
     uncertainty_of(template.scene())?;
     let figure =
-        arguments.figure.as_ref().map(|file| Ok::<_, Error>((file, FigureFormat::of(file)?))).transpose()?;
+        arguments.figure.as_ref().map(|file| Ok::<_, Error>((file, figure_format(file)?))).transpose()?;
     if let Some(folder) = &arguments.out {
         report::check_writable(folder)?;
     }
@@ -116,7 +116,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let drawn = (figure.is_some() || arguments.out.is_some())
         .then(|| report::scatter_figure(&scatter, &request.wanted));
     if let (Some((file, format)), Some(svg)) = (figure, &drawn) {
-        write_file(file, &format.of_svg(svg.clone(), &scatter.scene)?)?;
+        let figure = FigureFile { title: scatter.scene.clone(), svg: svg.clone() };
+        write_file(file, &format.bytes(&figure)?)?;
     }
     if let (Some(folder), Some(svg)) = (&arguments.out, drawn) {
         let json = serde_json::to_string_pretty(&scatter)

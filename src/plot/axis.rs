@@ -1,8 +1,8 @@
 //! Axes of charts: a range, linear or logarithmic, its marks, and the frame that two of them make.
 
-use crate::format::{short, with_minus};
+use crate::format::{rounded, short, with_minus};
 use crate::plot::polyline::Point;
-use crate::plot::svg::x2;
+use crate::plot::svg::{FONT_SIZE, upright, x2};
 use crate::plot::ticks::{tick_label, ticks};
 use maud::{Markup, html};
 
@@ -30,6 +30,11 @@ impl PlotAxis {
         PlotAxis { low, high, logarithmic: logarithmic && low > 0.0 }
     }
 
+    /// Linear from `low` to `high`.
+    pub(crate) fn linear(low: f64, high: f64) -> Self {
+        PlotAxis { low, high, logarithmic: false }
+    }
+
     /// With room of a `share` of its length at both ends.
     pub(crate) fn widened(self, share: f64) -> Self {
         let (low, high) = (self.measure(self.low), self.measure(self.high));
@@ -55,22 +60,27 @@ impl PlotAxis {
         self.value(0.5 * (self.measure(a) + self.measure(b)))
     }
 
-    /// Round numbers, about `wanted` of them.
+    /// Round numbers, about `wanted` of them; of many decades each second or later one.
     pub(crate) fn marks(&self, wanted: usize) -> Vec<f64> {
         let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
-        let powers = |multiples: &[f64]| -> Vec<f64> {
-            let all = decades.clone().flat_map(|k| multiples.iter().map(move |m| m * 10_f64.powi(k)));
+        let powers = |every: usize, multiples: &'static [f64]| -> Vec<f64> {
+            let decades = decades.clone().step_by(every);
+            let all = decades.flat_map(|k| multiples.iter().map(move |m| m * 10_f64.powi(k)));
             all.filter(|v| (self.low..=self.high).contains(v)).collect()
         };
-        let rounded = |marks: &Vec<f64>| (3..=wanted).contains(&marks.len());
-        let logarithmic = self.logarithmic.then(|| [powers(&[1.0, 2.0, 5.0]), powers(&[1.0])]);
-        let chosen = logarithmic.into_iter().flatten().find(rounded);
+        let finer = std::iter::once(powers(1, &[1.0, 2.0, 5.0]));
+        let logarithmic = self.logarithmic.then(|| finer.chain((1..8).map(|every| powers(every, &[1.0]))));
+        let chosen = logarithmic.into_iter().flatten().find(|marks| (3..=wanted).contains(&marks.len()));
         chosen.unwrap_or_else(|| ticks(self.low, self.high, wanted))
     }
 
     /// The number at a mark.
     pub(crate) fn label(&self, mark: f64, marks: &[f64]) -> String {
-        if self.logarithmic { with_minus(&short(mark)) } else { tick_label(mark, marks) }
+        match self.logarithmic {
+            true if (1e-3..1e5).contains(&mark) => with_minus(&short(mark)),
+            true => with_minus(&format!("{:e}", rounded(mark, 6))),
+            false => tick_label(mark, marks),
+        }
     }
 
     /// Where it begins and ends.
@@ -115,34 +125,39 @@ impl Plot {
     pub(crate) fn grid(&self, x_marks: &[f64], y_marks: &[f64]) -> Markup {
         html! {
             g stroke-width="1" {
-                @for x in x_marks { line.grid x1=(x2(self.x(*x))) x2=(x2(self.x(*x))) y1=(self.top) y2=(self.top + self.height) {} }
-                @for y in y_marks { line.grid x1=(self.left) x2=(self.left + self.width) y1=(x2(self.y(*y))) y2=(x2(self.y(*y))) {} }
+                @for x in x_marks { line.fig-grid x1=(x2(self.x(*x))) x2=(x2(self.x(*x))) y1=(self.top) y2=(self.top + self.height) {} }
+                @for y in y_marks { line.fig-grid x1=(self.left) x2=(self.left + self.width) y1=(x2(self.y(*y))) y2=(x2(self.y(*y))) {} }
             }
         }
     }
 
-    /// Numbers at the marks, what they are of, and the frame.
-    pub(crate) fn frame(
-        &self,
-        x_marks: &[f64],
-        y_marks: &[f64],
-        labels: [&str; 2],
-        font_size: f64,
-    ) -> Markup {
+    /// Numbers at the marks of both axes, what they are of, and the frame.
+    pub(crate) fn frame(&self, x_marks: &[f64], y_marks: &[f64], [x_label, y_label]: [&str; 2]) -> Markup {
+        html! { (self.below(x_marks, x_label)) (self.beside(y_marks, y_label)) (self.outline()) }
+    }
+
+    /// Numbers at the marks of the horizontal axis, and what they are of.
+    pub(crate) fn below(&self, marks: &[f64], label: &str) -> Markup {
         let bottom = self.top + self.height;
         html! {
-            @for x in x_marks {
-                text x=(x2(self.x(*x))) y=(bottom + 19.0) text-anchor="middle" { (self.x.label(*x, x_marks)) }
-            }
-            @for y in y_marks {
-                text x=(self.left - 8.0) y=(x2(self.y(*y) + 0.36 * font_size)) text-anchor="end" { (self.y.label(*y, y_marks)) }
-            }
-            text x=(self.left + 0.5 * self.width) y=(bottom + 41.0) text-anchor="middle" { (labels[0]) }
-            text transform=(format!("translate(17 {:.2}) rotate(-90)", self.top + 0.5 * self.height)) text-anchor="middle" {
-                (labels[1])
-            }
-            rect.frame x=(self.left) y=(self.top) width=(self.width) height=(self.height) {}
+            @for x in marks { text x=(x2(self.x(*x))) y=(bottom + 19.0) text-anchor="middle" { (self.x.label(*x, marks)) } }
+            text x=(self.left + 0.5 * self.width) y=(bottom + 41.0) text-anchor="middle" { (label) }
         }
+    }
+
+    /// The same of the vertical axis; without a name for an empty `label`.
+    pub(crate) fn beside(&self, marks: &[f64], label: &str) -> Markup {
+        html! {
+            @for y in marks {
+                text x=(self.left - 8.0) y=(x2(self.y(*y) + 0.36 * FONT_SIZE)) text-anchor="end" { (self.y.label(*y, marks)) }
+            }
+            @if !label.is_empty() { (upright(17.0, self.top + 0.5 * self.height, label)) }
+        }
+    }
+
+    /// The frame.
+    pub(crate) fn outline(&self) -> Markup {
+        html! { rect.fig-frame x=(self.left) y=(self.top) width=(self.width) height=(self.height) {} }
     }
 }
 

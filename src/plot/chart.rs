@@ -2,8 +2,8 @@
 
 use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::polyline::{Point, path};
-use crate::plot::svg::x2;
-use maud::{Markup, PreEscaped, html};
+use crate::plot::svg::{Svg, Theme, text_width, x2};
+use maud::{Markup, html};
 
 /// Width in px.
 pub(crate) const CHART_WIDTH: f64 = 760.0;
@@ -11,7 +11,6 @@ pub(crate) const LEFT: f64 = 74.0;
 const RIGHT: f64 = 16.0;
 const PANEL_HEIGHT: f64 = 300.0;
 pub(crate) const PANEL_GAP: f64 = 62.0;
-pub(crate) const FONT_SIZE: f64 = 13.0;
 /// Height of a row of the legend, px.
 pub(crate) const LEGEND_ROW: f64 = 22.0;
 
@@ -25,9 +24,6 @@ const STYLES: [(&str, &str); 7] = [
     ("#e69f00", "14 3"),
     ("#56b4e9", "2 2 7 2"),
 ];
-
-const STYLE: &str = "text{fill:#1a1a1a}.frame{stroke:#444;fill:none}.grid{stroke:#e3e3e3}.band{fill:#ececec}\
-.said{stroke:#666;stroke-dasharray:6 4}";
 
 /// Points that belong together.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -76,21 +72,7 @@ pub fn chart(title: &str, panels: &[ChartPanel]) -> String {
             (draw(panel, width, top + k as f64 * (PANEL_HEIGHT + PANEL_GAP)))
         }
     };
-    sheet(title, height, &content)
-}
-
-/// A stand-alone SVG of a chart's width and `height` px with its `content`.
-pub(crate) fn sheet(title: &str, height: f64, content: &Markup) -> String {
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {CHART_WIDTH} {height}")) width=(CHART_WIDTH) height=(height)
-            font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) role="img" {
-            title { (title) }
-            style { (PreEscaped(STYLE)) }
-            rect width=(CHART_WIDTH) height=(height) fill="#ffffff" {}
-            (content)
-        }
-    }
-    .into_string()
+    Svg::new(title, [width, height], Theme::Standalone).around(&content).into_string()
 }
 
 struct Legend {
@@ -102,7 +84,7 @@ fn legend(series: &[&Series], page: f64) -> Legend {
     let (mut x, mut row) = (LEFT, 0);
     let mut items = Vec::new();
     for (k, series) in series.iter().enumerate().filter(|(_, series)| !series.name.is_empty()) {
-        let width = 50.0 + 0.62 * FONT_SIZE * series.name.chars().count() as f64;
+        let width = 50.0 + text_width(&series.name);
         if x > LEFT && x + width > page - RIGHT {
             (x, row) = (LEFT, row + 1);
         }
@@ -153,12 +135,12 @@ fn draw(panel: &ChartPanel, page: f64, top: f64) -> Markup {
     x_marks.retain(|x| !panel.counted || x.fract() == 0.0);
     html! {
         @if let Some([from, to]) = band {
-            rect.band x=(LEFT) width=(width) y=(x2(plot.y(to))) height=(x2(plot.y(from) - plot.y(to))) {}
+            rect.fig-range x=(LEFT) width=(width) y=(x2(plot.y(to))) height=(x2(plot.y(from) - plot.y(to))) {}
         }
         (plot.grid(&x_marks, &y_marks))
         @for (x, statement) in &panel.statements {
             @let right = plot.x.place(*x) > 0.5;
-            line.said x1=(x2(plot.x(*x))) x2=(x2(plot.x(*x))) y1=(top) y2=(top + height) {}
+            line.fig-note x1=(x2(plot.x(*x))) x2=(x2(plot.x(*x))) y1=(top) y2=(top + height) {}
             text x=(x2(plot.x(*x) + if right { -6.0 } else { 6.0 })) y=(top + height - 10.0) text-anchor=(if right { "end" } else { "start" }) {
                 (statement)
             }
@@ -179,7 +161,7 @@ fn draw(panel: &ChartPanel, page: f64, top: f64) -> Markup {
                 }
             }
         }
-        (plot.frame(&x_marks, &y_marks, [&panel.x_label, &panel.y_label], FONT_SIZE))
+        (plot.frame(&x_marks, &y_marks, [&panel.x_label, &panel.y_label]))
     }
 }
 

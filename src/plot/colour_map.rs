@@ -1,11 +1,10 @@
 //! A quantity over two parameters, in colours: cells of a grid, or dots where points are scattered.
 
 use crate::plot::axis::{Plot, PlotAxis};
-use crate::plot::chart::{CHART_WIDTH, FONT_SIZE, LEFT, LEGEND_ROW, PANEL_GAP, sheet};
-use crate::plot::colours::cividis;
-use crate::plot::colours::hex;
+use crate::plot::chart::{CHART_WIDTH, LEFT, LEGEND_ROW, PANEL_GAP};
+use crate::plot::colours::{cividis, hex};
 use crate::plot::polyline::Point;
-use crate::plot::svg::x2;
+use crate::plot::svg::{Svg, Theme, upright, x2};
 use maud::{Markup, html};
 
 /// Room on the right for the scale of colours, px.
@@ -43,7 +42,7 @@ pub fn colour_maps(title: &str, maps: &[ColourMap]) -> String {
         (legend(marks, line))
         @for (k, map) in maps.iter().enumerate() { (draw(map, top + k as f64 * (HEIGHT + PANEL_GAP))) }
     };
-    sheet(title, height, &content)
+    Svg::new(title, [CHART_WIDTH, height], Theme::Standalone).around(&content).into_string()
 }
 
 fn legend(marks: Option<&String>, line: Option<&String>) -> Markup {
@@ -73,14 +72,14 @@ fn draw(map: &ColourMap, top: f64) -> Markup {
         Plot { left: LEFT, top, width, height, x: axis(0).widened(room(0)), y: axis(1).widened(room(1)) };
     let (x_marks, y_marks) = (plot.x.marks((width / 70.0) as usize), plot.y.marks(6));
     html! {
-        rect.band x=(LEFT) y=(top) width=(width) height=(HEIGHT) {}
+        rect.fig-range x=(LEFT) y=(top) width=(width) height=(HEIGHT) {}
         @match &grid {
             Some(grid) => (grid.cells(&plot, &scale)),
             None => @for (at, value) in map.points.iter().filter(|(_, v)| v.is_finite()) { (dot(plot.at((at[0], at[1])), &colour(*value, &scale))) },
         }
         @if let (Some(grid), Some((_, function))) = (&grid, &map.line) { (contour(&grid.contour(&plot, function))) }
         @for (at, value) in &map.marks.1 { (ring(plot.at((at[0], at[1])), &colour(*value, &scale))) }
-        (plot.frame(&x_marks, &y_marks, [&map.labels[0], &map.labels[1]], FONT_SIZE))
+        (plot.frame(&x_marks, &y_marks, [&map.labels[0], &map.labels[1]]))
         (colour_bar(&map.value_label, &scale, top))
     }
 }
@@ -206,11 +205,11 @@ fn colour_bar(label: &str, scale: &PlotAxis, top: f64) -> Markup {
             @let fill = hex(cividis(k as f64 / (COLOURS - 1) as f64));
             rect x=(x) width="14" y=(x2(top + HEIGHT - step * (k + 1) as f64)) height=(x2(step)) fill=(fill) stroke=(fill) stroke-width="0.4" {}
         }
-        rect.frame x=(x) y=(top) width="14" height=(HEIGHT) {}
+        rect.fig-frame x=(x) y=(top) width="14" height=(HEIGHT) {}
         @for mark in marks.iter().filter(|mark| **mark >= low) {
             text x=(x + 19.0) y=(x2(top + HEIGHT * (1.0 - scale.place(*mark)) + 4.7)) { (scale.label(*mark, &marks)) }
         }
-        text transform=(format!("translate({} {:.2}) rotate(-90)", CHART_WIDTH - 10.0, top + 0.5 * HEIGHT)) text-anchor="middle" { (label) }
+        (upright(CHART_WIDTH - 10.0, top + 0.5 * HEIGHT, label))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Frame of a picture in section: axes in mm and, for a field, the scale of its colours.
 
 use crate::plot::colours::cividis;
-use crate::plot::svg::x2;
+use crate::plot::svg::{Svg, Theme, upright, x2};
 use crate::plot::ticks::{tick_label, ticks};
 use maud::{Markup, html};
 
@@ -10,7 +10,6 @@ const WIDTH: f64 = 400.0;
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 10.0;
 const TOP: f64 = 8.0;
-const FONT_SIZE: f64 = 13.0;
 
 /// What is shown, in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,29 +95,24 @@ impl Frame<'_> {
         let marks_up = ticks(low * 1e3, high * 1e3, ((height / 50.0) as usize).max(2));
         let total = bottom + if self.scale.is_some() { 92.0 } else { 44.0 };
         let [x, y, w, h] = place.rectangle();
-        html! {
-            svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {total:.1}")) role="img"
-                font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) aria-labelledby=(format!("{}-title", self.id)) {
-                title id=(format!("{}-title", self.id)) { (self.name) }
-                (content(&place))
-                rect.fig-frame x=(x) y=(y) width=(w) height=(h) {}
-                @for mark in &marks {
-                    @let x = x2(place.x(mark * 1e-3));
-                    line.fig-frame x1=(x) x2=(x) y1=(x2(bottom)) y2=(x2(bottom + 4.0)) {}
-                    text.fig-text x=(x) y=(x2(bottom + 18.0)) text-anchor="middle" { (tick_label(*mark, &marks)) }
-                }
-                text.fig-text x=(x2(LEFT + 0.5 * width)) y=(x2(bottom + 36.0)) text-anchor="middle" { (self.across) }
-                @for mark in &marks_up {
-                    @let y = place.y(mark * 1e-3);
-                    line.fig-frame x1=(LEFT - 4.0) x2=(LEFT) y1=(x2(y)) y2=(x2(y)) {}
-                    text.fig-text x=(LEFT - 7.0) y=(x2(y + 4.7)) text-anchor="end" { (tick_label(*mark, &marks_up)) }
-                }
-                text.fig-text transform=(format!("translate(13 {:.2}) rotate(-90)", TOP + 0.5 * height)) text-anchor="middle" {
-                    "z in mm"
-                }
-                @if let Some(scale) = self.scale { (colour_scale(scale, bottom + 46.0, self.id)) }
+        let drawing = html! {
+            (content(&place))
+            rect.fig-frame x=(x) y=(y) width=(w) height=(h) {}
+            @for mark in &marks {
+                @let x = x2(place.x(mark * 1e-3));
+                line.fig-frame x1=(x) x2=(x) y1=(x2(bottom)) y2=(x2(bottom + 4.0)) {}
+                text x=(x) y=(x2(bottom + 18.0)) text-anchor="middle" { (tick_label(*mark, &marks)) }
             }
-        }
+            text x=(x2(LEFT + 0.5 * width)) y=(x2(bottom + 36.0)) text-anchor="middle" { (self.across) }
+            @for mark in &marks_up {
+                @let y = place.y(mark * 1e-3);
+                line.fig-frame x1=(LEFT - 4.0) x2=(LEFT) y1=(x2(y)) y2=(x2(y)) {}
+                text x=(LEFT - 7.0) y=(x2(y + 4.7)) text-anchor="end" { (tick_label(*mark, &marks_up)) }
+            }
+            (upright(13.0, TOP + 0.5 * height, "z in mm"))
+            @if let Some(scale) = self.scale { (colour_scale(scale, bottom + 46.0, self.id)) }
+        };
+        Svg::new(self.name, [WIDTH, total], Theme::Inline).around(&drawing)
     }
 }
 
@@ -138,8 +132,8 @@ fn colour_scale(scale: ColourScale, top: f64, id: &str) -> Markup {
         rect.fig-edge x=(LEFT) y=(x2(top)) width=(x2(width)) height="10" fill=(format!("url(#{id}-scale)")) {}
         @for mark in &marks {
             @let x = LEFT + if to > 0.0 { width * mark / to } else { 0.0 };
-            text.fig-text x=(x2(x)) y=(x2(top + 24.0)) text-anchor="middle" { (tick_label(*mark, &marks)) }
+            text x=(x2(x)) y=(x2(top + 24.0)) text-anchor="middle" { (tick_label(*mark, &marks)) }
         }
-        text.fig-text x=(x2(LEFT + 0.5 * width)) y=(x2(top + 41.0)) text-anchor="middle" { (scale.label) }
+        text x=(x2(LEFT + 0.5 * width)) y=(x2(top + 41.0)) text-anchor="middle" { (scale.label) }
     }
 }

@@ -21,3 +21,4 @@ pub(crate) mod ticks;
 pub use chart::{ChartPanel, Series, chart};
 pub use colour_map::{ColourMap, colour_maps};
 pub use png::png;
+pub use svg::{Svg, Theme};

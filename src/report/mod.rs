@@ -23,13 +23,10 @@ pub use ci::github;
 pub use ci::junit::junit;
 pub(crate) use ci::junit::{integrity_failure as check_failure, told as row_told};
 pub use ci::markdown::markdown;
-pub use export::csv::curves_csv;
-pub use export::figure::{FigureFormat, figure_file};
-pub use export::history::history_file;
-pub use export::json::json;
+pub use export::{Export, FigureFile, curves_csv, figure_format, history_format, json};
 pub use figure::curves::curves_chart;
 pub use figure::scatter::scatter_figure;
-pub use figure::scene::{FIGURE_WIDTHS, Theme, figure, measured_figure, printed_figure};
+pub use figure::scene::{FIGURE_WIDTHS, figure, measured_figure, printed_figure};
 pub use figure::sweep::{Drawn, sweep_figure};
 pub use kinds::{Arrow, seat_picture};
 pub use page::index::index_page;
@@ -39,6 +36,8 @@ pub use page::scene::scene_page;
 pub use page::section::measured::efficiency_figure;
 pub use terminal::{Width, alone, terminal};
 pub use write::{check_writable, write};
+
+pub use crate::plot::Theme;
 
 use crate::comparison::{Comparison, GateRules, SceneComparison};
 use crate::coverage::Coverage;

@@ -43,6 +43,12 @@ impl Standing {
     }
 }
 
+/// A folder of a report: this run, and all scenes whose results stand there.
+pub struct Folder<'a> {
+    pub(super) report: &'a Report<'a>,
+    pub(super) scenes: &'a [Standing],
+}
+
 /// The document as it is written and read again.
 #[derive(Serialize, Deserialize)]
 struct ReportDocument {

@@ -2,13 +2,16 @@
 
 use crate::error::{Error, Result};
 use crate::interrupt::Scratch;
+use crate::report::ci::junit::JUnit;
+use crate::report::ci::markdown::Markdown;
+use crate::report::export::{Csv, Export, Json};
 use crate::report::page::coverage;
-use crate::report::page::validated_map;
-use crate::report::page::validated_map::ValidatedMap;
+use crate::report::page::index::Index;
+use crate::report::page::scene::Page;
+use crate::report::page::validated_map::{self, ValidatedMap};
 use crate::report::run_times::same_but_for_run_times;
-use crate::report::standing;
-use crate::report::standing::{DOCUMENT, Standing};
-use crate::report::{Report, kinds};
+use crate::report::standing::{self, Folder, Standing};
+use crate::report::{Report, SceneReport, kinds};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
@@ -16,6 +19,12 @@ use std::path::{Component, Path, PathBuf};
 
 /// Pixels of the PNG per unit of the drawing: 760 units are 2280 px, 300 dpi at a width of 19 cm.
 const PNG_SCALE: f32 = 3.0;
+
+/// Files of all scenes, and their names without ending.
+const OF_ALL: [(&str, &dyn for<'f> Export<Folder<'f>>); 4] =
+    [("index", &Index), ("comparison", &Json), ("comparison", &Markdown), ("junit", &JUnit)];
+/// Files of each scene, of its name.
+const OF_SCENE: [&dyn for<'s> Export<SceneReport<'s>>; 2] = [&Csv, &Page];
 
 /// Writes `index.html`, `coverage.html`, `comparison.json`, `comparison.md`, `junit.xml`, the map of validated scenes (SVG) and, per scene, its
 /// page, figure (SVG, PNG) and curves (CSV) into `dir`, which is made if it does not exist.
@@ -90,12 +99,11 @@ pub fn check_writable(dir: &Path) -> Result<()> {
 /// Name and content of every file.
 fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)>> {
     let mut names = BTreeSet::new();
-    let mut files = vec![
-        ("index.html".to_owned(), crate::report::page::index::index_of(report, standing).into_bytes()),
-        (DOCUMENT.to_owned(), standing::document(report, standing)?.into_bytes()),
-        ("comparison.md".to_owned(), crate::report::ci::markdown::of(report, standing).into_bytes()),
-        ("junit.xml".to_owned(), crate::report::junit(report)?.into_bytes()),
-    ];
+    let folder = Folder { report, scenes: standing };
+    let file = |(stem, format): (&str, &dyn for<'f> Export<Folder<'f>>)| {
+        Ok((format!("{stem}.{}", format.ending()), format.bytes(&folder)?))
+    };
+    let mut files: Vec<(String, Vec<u8>)> = OF_ALL.into_iter().map(file).collect::<Result<_>>()?;
     if let Some(map) = ValidatedMap::of(report.validated(), None) {
         files.push((validated_map::FILE.to_owned(), map.svg().into_bytes()));
     }
@@ -115,8 +123,9 @@ fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)
             files.push((format!("{stem}.png"), crate::plot::png(&drawing.svg, PNG_SCALE)?));
             files.push((format!("{stem}.svg"), drawing.svg.into_bytes()));
         }
-        files.push((format!("{name}.csv"), crate::report::curves_csv(scene)?.into_bytes()));
-        files.push((format!("{name}.html"), crate::report::scene_page(scene).into_bytes()));
+        for format in OF_SCENE {
+            files.push((format!("{name}.{}", format.ending()), format.bytes(scene)?));
+        }
     }
     Ok(files)
 }

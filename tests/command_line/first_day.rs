@@ -61,7 +61,7 @@ fn a_history_has_the_format_its_ending_names() {
         folder.path(),
         &["reduced", "scaled-plate-r10", "--history", "h.xlsx"],
         2,
-        &["xlsx", "csv and parquet"],
+        &["--history h.xlsx: the name has to end in .csv or .parquet"],
     );
     assert!(!file("h.xlsx").exists());
 }

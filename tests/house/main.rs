@@ -3,6 +3,7 @@
 //! A bound is the count of today. Above it a test fails and prints what was counted; below it the test asks for the lower bound.
 
 mod source;
+mod words;
 
 use source::{Language, Source, kinds, sources};
 use std::collections::{BTreeMap, BTreeSet};

@@ -4,9 +4,12 @@ use crate::report_data::{Data, between};
 use impactcheck::kinds::plate_impact::CURVES;
 use impactcheck::plot::png;
 use impactcheck::reference::{CurveBands, FieldMesh};
-use impactcheck::report::{FigureFormat, Theme, figure, figure_file, printed_figure, scene_page};
+use impactcheck::report::{
+    FigureFile, SceneReport, Theme, figure, figure_format, printed_figure, scene_page,
+};
 use impactcheck::result::Outcome;
 use resvg::usvg::roxmltree::Document;
+use std::path::Path;
 
 #[test]
 fn figure_is_well_formed_without_nan_and_holds_every_curve() {
@@ -116,32 +119,28 @@ fn assert_inside(svg: &str, what: &str) {
     assert!(inside.top() > -0.5 && inside.bottom() < tree.size().height() + 0.5, "{what}: {inside:?}");
 }
 
-/// The page has a drawing as narrow as a phone, with the same panels and type that is not shrunk there.
+/// A figure that is called so.
+fn file(scene: &SceneReport, width: f64, name: &str) -> Vec<u8> {
+    let figure = FigureFile { title: scene.scene.name.clone(), svg: printed_figure(scene, width) };
+    figure_format(Path::new(name)).unwrap().bytes(&figure).unwrap()
+}
+
+/// The page has its figure once. On a phone it scrolls by itself, and its type is not shrunk to the screen.
 #[test]
-fn a_phone_gets_a_drawing_of_its_own_width() {
+fn a_page_has_one_figure_with_readable_type_on_a_phone() {
     let data = Data::new();
-    let report = data.report();
-    let page = scene_page(&report.scenes[0]);
-    let labels = |svg: &str| -> Vec<String> {
-        let xml = Document::parse(svg).unwrap();
-        let of = |n: resvg::usvg::roxmltree::Node| n.text().map(str::to_owned);
-        let all = xml.descendants().filter(|n| n.has_tag_name("text")).filter_map(of);
-        all.filter(|text| text.contains(" in ")).collect()
-    };
-    let wide = between(&page, "<div class=\"wide\">", "</div>");
-    let narrow = between(&page, "<div class=\"narrow\">", "</div>");
-    assert_eq!(labels(wide), labels(narrow));
-    let xml = Document::parse(narrow).unwrap();
+    let page = scene_page(&data.report().scenes[0]);
+    let drawn = between(&page, "<figure class=\"drawn\"><div class=\"scroll detailed\"", "</figure>");
+    let svg = format!("<svg{}</svg>", between(drawn, "<svg", "</svg>"));
+    let xml = Document::parse(&svg).unwrap();
+    let title =
+        xml.descendants().find(|node| node.has_tag_name("title")).and_then(|node| node.text()).unwrap();
+    assert_eq!(page.matches(&format!(">{title}<")).count(), 1);
     let root = xml.root_element();
     let width: f64 = root.attribute("viewBox").unwrap().split(' ').nth(2).unwrap().parse().unwrap();
     let size: f64 = root.attribute("font-size").unwrap().parse().unwrap();
-    // on a screen 375 px wide the page's margins leave 350
-    assert!(size * 350.0 / width >= 12.0, "{size} px in {width}");
-    assert_inside(narrow, "phone");
-    for class in ["fig-reference", "fig-A", "fig-B"] {
-        // legend and eight curves; the efficiencies stand in the legend
-        assert_eq!(narrow.matches(&format!("path class=\"{class}\"")).count(), 1 + CURVES.len(), "{class}");
-    }
+    let least: f64 = between(&page, ".detailed svg{min-width:", "rem}").parse().unwrap();
+    assert!(size * 16.0 * least / width >= 12.0, "{size} px in {width}");
 }
 
 /// Paths and colours of the PDF are those of the SVG, counted in what the file says itself.
@@ -151,7 +150,7 @@ fn pdf_holds_every_line_of_the_svg_on_a_page_of_its_size() {
     let data = Data::new();
     let report = data.report();
     let scene = &report.scenes[0];
-    let pdf = figure_file(scene, 85.0, FigureFormat::Pdf).unwrap();
+    let pdf = file(scene, 85.0, "figure.pdf");
     let find = |what: &[u8], from: usize| {
         from + pdf[from..].windows(what.len()).position(|w| w == what).unwrap_or_else(|| panic!("{what:?}"))
     };
@@ -192,7 +191,7 @@ fn text_of_a_pdf_can_be_searched() {
     let report = data.report();
     let scene = &report.scenes[0];
     for width in [85.0, 175.0] {
-        let pdf = figure_file(scene, width, FigureFormat::Pdf).unwrap();
+        let pdf = file(scene, width, "figure.pdf");
         let streams = streams(&pdf);
         let (content, cmap) = (&streams[0], &streams[2]);
         // ToUnicode: <glyph> <text in UTF-16>
@@ -299,7 +298,7 @@ fn streams(pdf: &[u8]) -> Vec<Vec<u8>> {
 fn png_for_papers_states_its_resolution() {
     let data = Data::new();
     let report = data.report();
-    let bytes = figure_file(&report.scenes[0], 85.0, FigureFormat::Png).unwrap();
+    let bytes = file(&report.scenes[0], 85.0, "figure.png");
     let reader = ::png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
     let info = reader.info();
     // 85 mm at 600 dots per inch

@@ -52,7 +52,8 @@ fn axis(view: Node, name: &str) -> impl Fn(f64) -> f64 {
     let lines = classed(view, "fig-grid").filter(|l| (l.attribute("x1") == l.attribute("x2")) == across);
     let places: Vec<f64> = lines.map(|line| number(&line, &format!("{name}1"))).collect();
     let anchor = if across { "middle" } else { "end" };
-    let labels = classed(view, "fig-text").filter(|t| t.attribute("text-anchor") == Some(anchor));
+    let labels =
+        view.descendants().filter(|t| t.has_tag_name("text") && t.attribute("text-anchor") == Some(anchor));
     let values: Vec<f64> = labels.filter_map(|t| t.text()?.parse().ok()).collect();
     assert!(places.len() >= 2 && places.len() == values.len(), "{values:?}");
     let last = places.len() - 1;

@@ -5,7 +5,22 @@ use crate::comparison::{Check, Discrepancy, GateRules, NO_RESULT, SceneCompariso
 use crate::error::{Error, Result};
 use crate::format::{percent, prefixed, with_unit};
 use crate::report::Report;
+use crate::report::export::Export;
+use crate::report::standing::Folder;
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
+
+/// The checks of this run.
+pub(crate) struct JUnit;
+
+impl Export<Folder<'_>> for JUnit {
+    fn ending(&self) -> &'static str {
+        "xml"
+    }
+
+    fn bytes(&self, folder: &Folder) -> Result<Vec<u8>> {
+        junit(folder.report).map(String::into_bytes)
+    }
+}
 
 /// JUnit XML. It holds no times, so that equal results give equal files.
 ///

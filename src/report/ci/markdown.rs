@@ -1,12 +1,12 @@
 //! The report as Markdown: verdicts, discrepancies and curve metrics as tables.
 
 use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison};
+use crate::error::Result;
 use crate::format::{model_name, percent, prefixed, significant, with_unit, words};
+use crate::report::export::Export;
 use crate::report::overview::{ModelOverview, Overview};
-use crate::report::page::validated_map;
-use crate::report::page::validated_map::ValidatedMap;
-use crate::report::standing;
-use crate::report::standing::Standing;
+use crate::report::page::validated_map::{self, ValidatedMap};
+use crate::report::standing::{self, Folder, Standing};
 use crate::report::{Report, SceneReport, kinds};
 use std::cmp::Reverse;
 
@@ -14,6 +14,19 @@ use std::cmp::Reverse;
 const MOST: usize = 60_000;
 /// Most of them for the table of verdicts.
 const MOST_ROWS: usize = 25_000;
+
+/// Verdicts and tables of all scenes of a folder.
+pub(crate) struct Markdown;
+
+impl Export<Folder<'_>> for Markdown {
+    fn ending(&self) -> &'static str {
+        "md"
+    }
+
+    fn bytes(&self, folder: &Folder) -> Result<Vec<u8>> {
+        Ok(of(folder.report, folder.scenes).into_bytes())
+    }
+}
 
 /// Markdown of the whole report, as far as it fits into a comment on GitHub.
 pub fn markdown(report: &Report) -> String {

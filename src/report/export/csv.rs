@@ -1,10 +1,50 @@
-//! The curves of a scene on the common axis as CSV, SI units.
+//! Comma-separated text, SI units: a history, and the curves of a scene on the common axis.
 
+use super::Export;
 use crate::curves::sample;
 use crate::error::{Error, Result};
 use crate::kinds;
 use crate::report::SceneReport;
-use crate::result::Curve;
+use crate::result::{Curve, History};
+
+/// Comma-separated text.
+pub struct Csv;
+
+impl Export<History> for Csv {
+    fn ending(&self) -> &'static str {
+        "csv"
+    }
+
+    fn bytes(&self, history: &History) -> Result<Vec<u8>> {
+        history_csv(history).map_err(|e| Error::Internal(format!("writing CSV: {e}")))
+    }
+}
+
+impl Export<SceneReport<'_>> for Csv {
+    fn ending(&self) -> &'static str {
+        "csv"
+    }
+
+    fn bytes(&self, scene: &SceneReport) -> Result<Vec<u8>> {
+        curves_csv(scene).map(String::into_bytes)
+    }
+}
+
+/// Name, unit and values of every column of a history's file.
+pub(super) fn columns(history: &History) -> Vec<(&'static str, &'static str, &[f64])> {
+    let curves = history.curves.iter().map(|curve| (curve.name, curve.unit, &curve.values[..]));
+    std::iter::once(("time", "s", &history.time[..])).chain(curves).collect()
+}
+
+fn history_csv(history: &History) -> std::result::Result<Vec<u8>, csv::Error> {
+    let columns = columns(history);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(columns.iter().map(|(name, ..)| name))?;
+    for i in 0..history.len() {
+        writer.serialize(columns.iter().map(|(.., values)| values[i]).collect::<Vec<f64>>())?;
+    }
+    writer.into_inner().map_err(|e| e.into_error().into())
+}
 
 /// CSV, eight significant digits, with the columns `time`, then `<source>_<curve>` for the reference and every model. A cell
 /// is empty where the result doesn't cover the axis or has no such curve; without a common axis there is only the header.

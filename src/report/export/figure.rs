@@ -1,57 +1,62 @@
-//! The figure of a scene as a file for a paper.
+//! Drawings as files for papers.
 
-use crate::error::{Error, Result};
-use crate::report::{SceneReport, printed_figure};
+use super::{Export, by_ending};
+use crate::error::Result;
+use crate::plot::pdf::pdf;
+use crate::plot::png::printed_png;
 use std::path::Path;
 
 /// Dots per inch of a PNG, what journals ask of line drawings.
 const RESOLUTION: f32 = 600.0;
 
-/// Kind of a figure's file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FigureFormat {
-    /// Vector drawing for the web and for editors; text stays text.
-    Svg,
-    /// Vector drawing for LaTeX; text stays text, in an embedded font.
-    Pdf,
-    /// 600 dots per inch.
-    Png,
+/// A drawing that has a file of its own.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FigureFile {
+    /// Title of the file.
+    pub title: String,
+    /// The drawing as a stand-alone SVG.
+    pub svg: String,
 }
 
-impl FigureFormat {
-    /// A stand-alone drawing in this format.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] if it can't be drawn.
-    pub fn of_svg(self, svg: String, title: &str) -> Result<Vec<u8>> {
-        match self {
-            FigureFormat::Svg => Ok(svg.into_bytes()),
-            FigureFormat::Pdf => crate::plot::pdf::pdf(&svg, title),
-            FigureFormat::Png => crate::plot::png::printed_png(&svg, RESOLUTION),
-        }
-    }
-
-    /// The format that the ending of `file` stands for.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] if it is none of them.
-    pub fn of(file: &Path) -> Result<Self> {
-        match file.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
-            "svg" => Ok(FigureFormat::Svg),
-            "pdf" => Ok(FigureFormat::Pdf),
-            "png" => Ok(FigureFormat::Png),
-            _ => Err(Error::Usage(format!(
-                "--figure {}: the name has to end in .svg, .pdf or .png",
-                file.display()
-            ))),
-        }
-    }
-}
-
-/// The figure of a scene, `width` mm wide (within [`crate::report::FIGURE_WIDTHS`]), as a file's bytes.
+/// The format that the ending of `file`, of the option `--figure`, names: SVG, PDF (text stays text, in an embedded font) or
+/// PNG.
 ///
 /// # Errors
-/// [`Error::Internal`] if it can't be drawn.
-pub fn figure_file(report: &SceneReport, width: f64, format: FigureFormat) -> Result<Vec<u8>> {
-    format.of_svg(printed_figure(report, width), &report.scene.name)
+/// [`Error::Usage`](crate::Error::Usage) if it names none.
+pub fn figure_format(file: &Path) -> Result<&'static dyn Export<FigureFile>> {
+    by_ending("--figure", file, &[&SvgFile, &PdfFile, &PngFile])
+}
+
+struct SvgFile;
+struct PdfFile;
+struct PngFile;
+
+impl Export<FigureFile> for SvgFile {
+    fn ending(&self) -> &'static str {
+        "svg"
+    }
+
+    fn bytes(&self, figure: &FigureFile) -> Result<Vec<u8>> {
+        Ok(figure.svg.clone().into_bytes())
+    }
+}
+
+impl Export<FigureFile> for PdfFile {
+    fn ending(&self) -> &'static str {
+        "pdf"
+    }
+
+    fn bytes(&self, figure: &FigureFile) -> Result<Vec<u8>> {
+        pdf(&figure.svg, &figure.title)
+    }
+}
+
+impl Export<FigureFile> for PngFile {
+    fn ending(&self) -> &'static str {
+        "png"
+    }
+
+    fn bytes(&self, figure: &FigureFile) -> Result<Vec<u8>> {
+        printed_png(&figure.svg, RESOLUTION)
+    }
 }

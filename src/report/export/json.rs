@@ -1,6 +1,8 @@
 //! The comparison document as JSON.
 
+use super::Export;
 use crate::error::Result;
+use crate::report::standing::Folder;
 use crate::report::{Report, standing};
 
 /// Pretty JSON of [`crate::comparison::Comparison`], of every scene also what tables of several scenes show (`overview`),
@@ -10,4 +12,17 @@ use crate::report::{Report, standing};
 /// [`crate::Error::Internal`] if it can't be serialised.
 pub fn json(report: &Report) -> Result<String> {
     standing::document(report, &standing::of_run(report))
+}
+
+/// The document of all scenes of a folder.
+pub struct Json;
+
+impl Export<Folder<'_>> for Json {
+    fn ending(&self) -> &'static str {
+        "json"
+    }
+
+    fn bytes(&self, folder: &Folder) -> Result<Vec<u8>> {
+        standing::document(folder.report, folder.scenes).map(String::into_bytes)
+    }
 }

@@ -3,6 +3,7 @@
 use crate::comparison::budget::QuantityBudget;
 use crate::format::{percent, words};
 use crate::plot::polyline::Point;
+use crate::plot::svg::{FONT_SIZE, Svg, Theme, x2};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
@@ -14,8 +15,6 @@ const ROW: f64 = 36.0;
 const BAR: f64 = 13.0;
 /// Room on both sides of a panel's longest bar.
 const MARGIN: f64 = 4.0;
-/// Font size in px.
-const FONT_SIZE: f64 = 13.0;
 /// Font size of the numbers in px.
 const SMALL: f64 = 11.5;
 
@@ -83,30 +82,27 @@ pub(crate) fn budget_figure(rows: &[QuantityBudget], open: &BTreeMap<&str, f64>)
         let left = LEFT + panel as f64 * (width + GAP);
         left + MARGIN + (width - 2.0 * MARGIN) * (value - low) / span
     };
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {}", bottom + 6.0))
-            font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) role="img" {
-            title { "Discrepancy budget: what each simplification adds to model B less reference" }
-            @for (k, name) in names.iter().enumerate() {
-                @let y = TOP + ROW * k as f64;
-                // the sum stands apart from its terms
-                line class=(if k == 1 { "fig-frame" } else { "fig-grid" }) x1="0" x2=(WIDTH) y1=(x2(y)) y2=(x2(y)) {}
-                text.fig-text x="0" y=(x2(y + 0.5 * ROW + 0.36 * FONT_SIZE)) { (name) }
+    let title = "Discrepancy budget: what each simplification adds to model B less reference";
+    Svg::new(title, [WIDTH, bottom + 6.0], Theme::Inline).around(&html! {
+        @for (k, name) in names.iter().enumerate() {
+            @let y = TOP + ROW * k as f64;
+            // the sum stands apart from its terms
+            line class=(if k == 1 { "fig-frame" } else { "fig-grid" }) x1="0" x2=(WIDTH) y1=(x2(y)) y2=(x2(y)) {}
+            text x="0" y=(x2(y + 0.5 * ROW + 0.36 * FONT_SIZE)) { (name) }
+        }
+        @for (p, (row, bars)) in rows.iter().zip(&panels).enumerate() {
+            @let middle = LEFT + p as f64 * (width + GAP) + 0.5 * width;
+            @for (k, word) in words(&row.quantity).split(", ").enumerate() {
+                text x=(x2(middle)) y=(x2(16.0 + 16.0 * k as f64)) text-anchor="middle" { (word) }
             }
-            @for (p, (row, bars)) in rows.iter().zip(&panels).enumerate() {
-                @let middle = LEFT + p as f64 * (width + GAP) + 0.5 * width;
-                @for (k, word) in words(&row.quantity).split(", ").enumerate() {
-                    text.fig-text x=(x2(middle)) y=(x2(16.0 + 16.0 * k as f64)) text-anchor="middle" { (word) }
-                }
-                @for (k, bar) in bars.iter().enumerate() {
-                    (draw(bar, (x_of(p, 0.0), TOP + ROW * k as f64), |value| x_of(p, value), middle))
-                }
-                @if bars.is_empty() {
-                    text.fig-text x=(x2(middle)) y=(x2(TOP + 0.6 * ROW)) text-anchor="middle" { "–" }
-                }
+            @for (k, bar) in bars.iter().enumerate() {
+                (draw(bar, (x_of(p, 0.0), TOP + ROW * k as f64), |value| x_of(p, value), middle))
+            }
+            @if bars.is_empty() {
+                text x=(x2(middle)) y=(x2(TOP + 0.6 * ROW)) text-anchor="middle" { "–" }
             }
         }
-    }
+    })
 }
 
 /// One bar from its `zero`, with its number below at `middle`.
@@ -129,18 +125,13 @@ fn draw(bar: &BudgetBar, zero: Point, x_of: impl Fn(f64) -> f64, middle: f64) ->
         @if high - low > 1.0 {
             line.fig-frame x1=(x2(low)) x2=(x2(high)) y1=(x2(top + 0.5 * BAR)) y2=(x2(top + 0.5 * BAR)) {}
         }
-        text.fig-text.fig-halo x=(x2(middle)) y=(x2(zero.1 + ROW - 5.0)) text-anchor="middle" font-size=(SMALL)
+        text.fig-halo x=(x2(middle)) y=(x2(zero.1 + ROW - 5.0)) text-anchor="middle" font-size=(SMALL)
             stroke-width="3" stroke-linejoin="round" aria-hidden="true" { (number) }
-        text.fig-text x=(x2(middle)) y=(x2(zero.1 + ROW - 5.0)) text-anchor="middle" font-size=(SMALL) { (number) }
+        text x=(x2(middle)) y=(x2(zero.1 + ROW - 5.0)) text-anchor="middle" font-size=(SMALL) { (number) }
     }
 }
 
 /// Per cent with a sign unless it rounds to zero.
 fn signed_percent(value: f64) -> String {
     if value.abs() < 5e-5 { "0.00 %".into() } else { percent(Some(value)) }
-}
-
-/// Coordinate with two decimals.
-fn x2(value: f64) -> String {
-    format!("{value:.2}")
 }

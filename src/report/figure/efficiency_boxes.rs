@@ -3,8 +3,7 @@
 use crate::format::significant;
 use crate::plot::labels::Rect;
 use crate::plot::svg::x2;
-use crate::report::figure::lines::Line;
-use crate::report::figure::lines::stroke;
+use crate::report::figure::lines::{Line, stroke};
 use maud::{Markup, html};
 
 const WIDTH: f64 = 122.0;
@@ -55,15 +54,15 @@ impl EfficiencyBoxes {
         let heading = if self.first.1 > 0.0 { 12.0 } else { 15.6 };
         html! {
             @if !lines.is_empty() && self.first != (0.0, 0.0) {
-                text.fig-text x=(x2(left)) y=(x2(top + heading)) { "Efficiency" }
+                text x=(x2(left)) y=(x2(top + heading)) { "Efficiency" }
             }
             @for (k, line) in lines.iter().enumerate() {
                 @let x = left + self.first.0 + k as f64 * self.step.0;
                 @let y = top + self.first.1 + k as f64 * self.step.1;
                 rect.fig-box x=(x2(x)) y=(x2(y)) width=(WIDTH) height=(HEIGHT) rx="2" {}
                 (stroke(line, &format!("M{:.2} {:.2}L{:.2} {:.2}", x + 7.0, y + 11.0, x + 29.0, y + 11.0)))
-                text.fig-text x=(x2(x + 35.0)) y=(x2(y + 15.6)) { (line.short) }
-                text.fig-text x=(x2(x + WIDTH - 7.0)) y=(x2(y + 15.6)) text-anchor="end" {
+                text x=(x2(x + 35.0)) y=(x2(y + 15.6)) { (line.short) }
+                text x=(x2(x + WIDTH - 7.0)) y=(x2(y + 15.6)) text-anchor="end" {
                     (significant(100.0 * line.efficiency, 3)) " %"
                 }
             }

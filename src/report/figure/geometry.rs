@@ -1,10 +1,8 @@
 //! Measures of a figure and its panels, and how lines and numbers are put into them.
 
 use crate::curves::SampledCurve;
+use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::svg::FONT_SIZE;
-
-/// Width of a drawing for phones in px.
-pub(crate) const PHONE_WIDTH: f64 = 360.0;
 
 /// Measures of the drawing in px.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,17 +32,6 @@ impl FigureGeometry {
         bottom: 50.0,
         boxes: true,
         millimetres: None,
-    };
-
-    /// For a phone held upright: as wide as its screen, so that type is not shrunk.
-    pub(crate) const PHONE: FigureGeometry = FigureGeometry {
-        width: PHONE_WIDTH,
-        left: 62.0,
-        right: 8.0,
-        panel_height: 220.0,
-        gap: 14.0,
-        boxes: false,
-        ..FigureGeometry::PAGE
     };
 
     /// For a figure `width` mm wide: type of 8.5 pt, in one column of a paper (below 120 mm) of 7.5 pt.
@@ -80,9 +67,15 @@ impl FigureGeometry {
         self.panel_height + self.residual_height
     }
 
-    /// Abscissa of `time`, if the axis ends at `end`.
-    pub(crate) fn x_of(&self, time: f64, end: f64) -> f64 {
-        self.left + self.inner_width() * time / end
+    /// A panel from `top` px on, over times in µs up to `end`, with this range of values.
+    pub(crate) fn plot(&self, top: f64, height: f64, end: f64, [low, high]: [f64; 2]) -> Plot {
+        let (x, y) = (PlotAxis::linear(0.0, end), PlotAxis::linear(low, high));
+        Plot { left: self.left, top, width: self.inner_width(), height, x, y }
+    }
+
+    /// Marks of the time axis of a panel.
+    pub(crate) fn instants(&self, plot: &Plot) -> Vec<f64> {
+        plot.x.marks((plot.width / 80.0) as usize)
     }
 
     /// Width of a panel.

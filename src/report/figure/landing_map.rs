@@ -2,8 +2,8 @@
 
 use crate::flight::{Landing, Landscape, Launch, Scatter, Seat, Setup, map_of_landings};
 use crate::plot::axis::{Plot, PlotAxis};
-use crate::plot::chart::{CHART_WIDTH, FONT_SIZE, LEFT, PANEL_GAP, sheet};
-use crate::plot::svg::x2;
+use crate::plot::chart::{CHART_WIDTH, LEFT, PANEL_GAP};
+use crate::plot::svg::{Svg, Theme, x2};
 use crate::result::FlightSummary;
 use maud::{Markup, html};
 use rayon::prelude::*;
@@ -46,20 +46,17 @@ pub(crate) fn map_picture(
     // a band without width is drawn as if it had a little
     let near = plot(1, centre, [0, 1].map(|k| (1.0 + ROOM) * bands[k].max(1e-3 * half[k])));
     let height = TOP + HEIGHTS.iter().sum::<f64>() + 2.0 * PANEL_GAP;
-    sheet(
-        "Map of landings",
-        height,
-        &html! {
-            (legend())
-            (cells(&wide, &rows, [half[0] / (SPEEDS - 1) as f64, half[1] / (ANGLES - 1) as f64]))
-            (band(&wide, centre, bands))
-            circle cx=(x2(wide.x(centre[0]))) cy=(x2(wide.y(centre[1].to_degrees()))) r="7" fill="none" stroke="#1a1a1a" stroke-width="1.6" {}
-            (framed(&wide))
-            @for landing in &flight.landings { (dot(&near, landing)) }
-            (band(&near, centre, bands))
-            (framed(&near))
-        },
-    )
+    let content = html! {
+        (legend())
+        (cells(&wide, &rows, [half[0] / (SPEEDS - 1) as f64, half[1] / (ANGLES - 1) as f64]))
+        (band(&wide, centre, bands))
+        circle cx=(x2(wide.x(centre[0]))) cy=(x2(wide.y(centre[1].to_degrees()))) r="7" fill="none" stroke="#1a1a1a" stroke-width="1.6" {}
+        (framed(&wide))
+        @for landing in &flight.landings { (dot(&near, landing)) }
+        (band(&near, centre, bands))
+        (framed(&near))
+    };
+    Svg::new("Map of landings", [CHART_WIDTH, height], Theme::Standalone).around(&content).into_string()
 }
 
 /// Panel number `k`; speeds in m/s, angles in degrees.
@@ -74,7 +71,7 @@ fn plot(k: usize, centre: [f64; 2], half: [f64; 2]) -> Plot {
 
 fn framed(plot: &Plot) -> Markup {
     let marks = (plot.x.marks(9), plot.y.marks(6));
-    plot.frame(&marks.0, &marks.1, ["Speed of the launch in m/s", "Angle in °"], FONT_SIZE)
+    plot.frame(&marks.0, &marks.1, ["Speed of the launch in m/s", "Angle in °"])
 }
 
 /// A path of rectangles per seat: neighbours of the same one are one.
@@ -97,7 +94,7 @@ fn cells(plot: &Plot, rows: &[Vec<Landing>], half: [f64; 2]) -> Markup {
         )
     };
     html! {
-        rect.band x=(plot.left) y=(plot.top) width=(plot.width) height=(plot.height) {}
+        rect.fig-range x=(plot.left) y=(plot.top) width=(plot.width) height=(plot.height) {}
         @for (seat, colour, _) in LOOKS {
             @let runs = rows.iter().flat_map(|row| row.chunk_by(|a, b| a.seat == b.seat)).filter(|same| same[0].seat == seat);
             path d=(runs.map(rectangle).collect::<String>()) fill=(colour) stroke=(colour) stroke-width="0.3" {}

@@ -1,14 +1,13 @@
 //! One panel of the figure: a quantity of all bodies and results over time.
 
 use crate::curves::{CommonAxis, SampledCurve};
+use crate::plot::axis::Plot;
 use crate::plot::labels::{LabelRoom, Rect};
 use crate::plot::polyline::{Point, path, thinned};
 use crate::plot::svg::{FONT_SIZE, text_width, x2};
-use crate::plot::ticks::{tick_label, ticks};
 use crate::report::figure::efficiency_boxes::EfficiencyBoxes;
 use crate::report::figure::geometry::{FigureGeometry, PanelOf};
-use crate::report::figure::lines::Line;
-use crate::report::figure::lines::stroke;
+use crate::report::figure::lines::{Line, stroke};
 use maud::{Markup, html};
 
 /// Lowest and highest value over all lines and bands, with room on both sides.
@@ -29,33 +28,30 @@ fn range(shown: &PanelOf, lines: &[Line]) -> (f64, f64) {
 
 /// One panel with its curves in px.
 struct Layout<'a> {
-    low: f64,
-    high: f64,
-    top: f64,
+    plot: Plot,
     drawn: Vec<(&'a Line, Vec<Vec<Point>>)>,
     /// Outlines of the bands.
     bands: Vec<Vec<Point>>,
-    geometry: &'a FigureGeometry,
     room: LabelRoom,
 }
 
 impl<'a> Layout<'a> {
     /// `headroom` px are kept free at the top.
     fn new(
-        geometry: &'a FigureGeometry,
+        geometry: &FigureGeometry,
         shown: &PanelOf,
         (top, end, headroom): (f64, f64, f64),
         lines: &'a [Line],
         axis: Option<CommonAxis>,
     ) -> Self {
+        let height = geometry.panel_height;
         let (low, high) = range(shown, lines);
-        let high = low + (high - low) * geometry.panel_height / (geometry.panel_height - headroom);
-        let y_of = |v: f64| top + geometry.panel_height * (high - v) / (high - low);
+        let high = low + (high - low) * height / (height - headroom);
+        let plot = geometry.plot(top, height, end, [low, high]);
         let points = |line: &Line, name: &str| -> Vec<Point> {
             let curve = line.curves.iter().find(|c| c.quantity == name);
             axis.zip(curve).map_or_else(Vec::new, |(axis, curve)| {
-                let at =
-                    |(k, v): (usize, &f64)| (geometry.x_of(axis.time(k) * 1e6, end), y_of(v * shown.factor));
+                let at = |(k, v): (usize, &f64)| plot.at((axis.time(k) * 1e6, v * shown.factor));
                 curve.values.iter().enumerate().map(at).filter(|p| p.1.is_finite()).collect()
             })
         };
@@ -63,21 +59,16 @@ impl<'a> Layout<'a> {
             .iter()
             .map(|l| (l, shown.curves.iter().map(|(_, name)| points(l, name)).collect()))
             .collect();
-        let area = Rect {
-            x: geometry.left + 6.0,
-            y: top + 5.0,
-            width: geometry.inner_width() - 12.0,
-            height: geometry.panel_height - 10.0,
-        };
+        let area = Rect { x: plot.left + 6.0, y: top + 5.0, width: plot.width - 12.0, height: height - 10.0 };
         let curves = drawn.iter().flat_map(|(_, bodies)| bodies).map(|line| thinned(line, 2.0)).collect();
         let outline = |curve: &SampledCurve, widths: &SampledCurve| {
             let side = |sign: f64| {
                 let at = move |(k, v): (usize, &f64)| (k, (v + sign * widths.values[k]) * shown.factor);
                 curve.values.iter().enumerate().map(at)
             };
-            let time = |k: usize| axis.map_or(0.0, |axis| geometry.x_of(axis.time(k) * 1e6, end));
+            let time = |k: usize| axis.map_or(0.0, |axis| axis.time(k) * 1e6);
             let edge = side(1.0).chain(side(-1.0).rev());
-            edge.filter(|(_, v)| v.is_finite()).map(|(k, v)| (time(k), y_of(v))).collect()
+            edge.filter(|(_, v)| v.is_finite()).map(|(k, v)| plot.at((time(k), v))).collect()
         };
         let bands = lines.iter().flat_map(|line| {
             line.bands.iter().filter(|band| shown.holds(band)).filter_map(|band| {
@@ -85,17 +76,13 @@ impl<'a> Layout<'a> {
             })
         });
         let bands = bands.collect();
-        Layout { low, high, top, room: LabelRoom { area, curves, taken: Vec::new() }, drawn, bands, geometry }
-    }
-
-    fn y_of(&self, value: f64) -> f64 {
-        self.top + self.geometry.panel_height * (self.high - value) / (self.high - self.low)
+        Layout { plot, room: LabelRoom { area, curves, taken: Vec::new() }, drawn, bands }
     }
 }
 
 /// The boxes fit between the curves in one of their two arrangements, or room is made at the top.
 fn layout_with_boxes<'a>(
-    geometry: &'a FigureGeometry,
+    geometry: &FigureGeometry,
     shown: &PanelOf,
     top: f64,
     end: f64,
@@ -134,44 +121,28 @@ pub(crate) fn panel(
     };
     let labels: Vec<_> =
         shown.curves.iter().enumerate().map(|(k, (body, _))| body_label(&mut layout, body, k)).collect();
-    let (low, high) = (layout.low, layout.high);
-    let FigureGeometry { left, panel_height, .. } = *geometry;
-    let width = geometry.inner_width();
-    let x_marks = ticks(0.0, end, (width / 80.0) as usize);
-    let y_marks = ticks(low, high, (panel_height / 45.0) as usize);
+    let plot = &layout.plot;
+    let y_marks = plot.y.marks((plot.height / 45.0) as usize);
     html! {
-        g stroke-width="1" {
-            @for t in &x_marks {
-                line.fig-grid x1=(x2(geometry.x_of(*t, end))) x2=(x2(geometry.x_of(*t, end))) y1=(top) y2=(top + panel_height) {}
-            }
-            @for v in &y_marks {
-                line.fig-grid x1=(left) x2=(left + width) y1=(x2(layout.y_of(*v))) y2=(x2(layout.y_of(*v))) {}
-            }
-        }
-        @for v in &y_marks {
-            text.fig-text x=(left - 8.0) y=(x2(layout.y_of(*v) + 0.36 * FONT_SIZE)) text-anchor="end" {
-                (tick_label(*v, &y_marks))
-            }
-        }
-        text.fig-text transform=(format!("translate(17 {:.2}) rotate(-90)", top + panel_height / 2.0))
-            text-anchor="middle" { (shown.label) }
+        (plot.grid(&geometry.instants(plot), &y_marks))
+        (plot.beside(&y_marks, shown.label))
         @for band in &layout.bands { path.fig-band d=(path(band) + "Z") {} }
         @for (line, bodies) in &layout.drawn {
             @for body in bodies { (stroke(line, &path(body))) }
         }
-        rect.fig-frame x=(left) y=(top) width=(width) height=(panel_height) {}
+        (plot.outline())
         @if let Some(boxes) = boxes { (boxes.draw(lines)) }
         @for label in labels { (label) }
     }
 }
 
 fn body_label(layout: &mut Layout, body: &str, k: usize) -> Markup {
-    let zero = layout.y_of(0.0);
+    let zero = layout.plot.y(0.0);
     let Some((_, reference)) = layout.drawn.first() else { return html! {} };
     let thin: Vec<_> = reference.iter().map(|line| thinned(line, 2.0)).collect();
     let others: Vec<_> = (0..thin.len()).filter(|j| *j != k).map(|j| thin[j].clone()).collect();
     // Where a curve is zero others may be as well; it is labelled elsewhere if there is an elsewhere.
-    let away = |p: &&Point| (p.1 - zero).abs() > 0.08 * layout.geometry.panel_height;
+    let away = |p: &&Point| (p.1 - zero).abs() > 0.08 * layout.plot.height;
     let mut own: Vec<Point> = thin[k].iter().filter(away).copied().collect();
     if own.is_empty() {
         own.clone_from(&thin[k]);
@@ -182,8 +153,8 @@ fn body_label(layout: &mut Layout, body: &str, k: usize) -> Markup {
         @if let Some((from, to)) = label.leader {
             line.fig-frame x1=(x2(from.0)) y1=(x2(from.1)) x2=(x2(to.0)) y2=(x2(to.1)) stroke-width="0.8" {}
         }
-        text.fig-text.fig-halo x=(x2(x)) y=(x2(y)) text-anchor="middle" stroke-width="3"
+        text.fig-halo x=(x2(x)) y=(x2(y)) text-anchor="middle" stroke-width="3"
             stroke-linejoin="round" aria-hidden="true" { (body) }
-        text.fig-text x=(x2(x)) y=(x2(y)) text-anchor="middle" { (body) }
+        text x=(x2(x)) y=(x2(y)) text-anchor="middle" { (body) }
     }
 }

@@ -3,7 +3,7 @@
 use crate::curves::CommonAxis;
 use crate::format::minus;
 use crate::plot::polyline::{Point, path_within};
-use crate::plot::svg::{FONT_SIZE, x2};
+use crate::plot::svg::{FONT_SIZE, upright, x2};
 use crate::plot::symmetric_log::SymmetricLog;
 use crate::report::figure::geometry::{FigureGeometry, PanelOf};
 use crate::report::figure::lines::Line;
@@ -51,13 +51,11 @@ pub(crate) fn residuals(
     let largest = all.map(|v| v.abs()).filter(|v| v.is_finite()).fold(f64::MIN_POSITIVE, f64::max);
     let scale = SymmetricLog { linear: LINEAR * largest, limit: 1.15 * largest, signed: true };
     let (top, height) = (top + GAP, geometry.residual_height - GAP);
+    // the values' axis is another one
+    let plot = geometry.plot(top, height, end, [0.0, 1.0]);
     let y_of = |v: f64| top + height * (1.0 - scale.place(v));
     let points = |values: &[f64], sign: f64| -> Vec<Point> {
-        values
-            .iter()
-            .enumerate()
-            .map(|(k, v)| (geometry.x_of(axis.time(k) * 1e6, end), y_of(sign * v)))
-            .collect()
+        values.iter().enumerate().map(|(k, v)| (plot.x(axis.time(k) * 1e6), y_of(sign * v))).collect()
     };
     let outline = |band: &[f64]| {
         let lower = points(band, -1.0).into_iter().rev();
@@ -65,7 +63,7 @@ pub(crate) fn residuals(
     };
     let decade = 10_f64.powf(largest.log10().floor());
     let marks = [-decade, 0.0, decade];
-    let (left, right) = (geometry.left, geometry.left + geometry.inner_width());
+    let (left, right) = (plot.left, plot.left + plot.width);
     html! {
         g stroke-width="1" { @for v in marks { line.fig-grid x1=(left) x2=(right) y1=(x2(y_of(v))) y2=(x2(y_of(v))) {} } }
         @for band in &bands { path.fig-band d=(outline(band)) {} }
@@ -74,11 +72,10 @@ pub(crate) fn residuals(
                 stroke-dasharray=(line.dash) stroke-linejoin="round" {}
         }
         @for v in marks {
-            text.fig-text x=(left - 8.0) y=(x2(y_of(v) + 0.36 * FONT_SIZE)) text-anchor="end" font-size="11.5" { (label(v)) }
+            text x=(left - 8.0) y=(x2(y_of(v) + 0.36 * FONT_SIZE)) text-anchor="end" font-size="11.5" { (label(v)) }
         }
-        text.fig-text transform=(format!("translate(17 {:.2}) rotate(-90)", top + 0.5 * height))
-            text-anchor="middle" { "model − FE" }
-        rect.fig-frame x=(left) y=(x2(top)) width=(x2(right - left)) height=(x2(height)) {}
+        (upright(17.0, top + 0.5 * height, "model − FE"))
+        (plot.outline())
     }
 }
 

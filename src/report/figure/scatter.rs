@@ -2,9 +2,9 @@
 
 use crate::format::{percent, prefixed, words};
 use crate::plot::axis::{Plot, PlotAxis};
-use crate::plot::chart::{FONT_SIZE, LEFT, sheet};
+use crate::plot::chart::{CHART_WIDTH, LEFT};
 use crate::plot::polyline::path;
-use crate::plot::svg::x2;
+use crate::plot::svg::{Svg, Theme, x2};
 use crate::uncertainty::{QuantityScatter, Scatter, Share};
 use maud::{Markup, html};
 
@@ -41,11 +41,9 @@ pub fn scatter_figure(scatter: &Scatter, wanted: &[String]) -> String {
             (bars(of, top + HEAD))
         }
     };
-    sheet(
-        &format!("{}: propagated input uncertainty, model {}", scatter.scene, scatter.model),
-        8.0 + block * quantities.len() as f64,
-        &content,
-    )
+    let title = format!("{}: propagated input uncertainty, model {}", scatter.scene, scatter.model);
+    let size = [CHART_WIDTH, 8.0 + block * quantities.len() as f64];
+    Svg::new(&title, size, Theme::Standalone).around(&content).into_string()
 }
 
 /// How often which values occur, with 95 % of them shaded and the nominal result marked.
@@ -75,15 +73,15 @@ fn histogram(of: &QuantityScatter, top: f64) -> Markup {
     let [low, high] = of.interval().map(|v| plot.x(v * to.factor));
     let label = if to.unit.is_empty() { "value".to_owned() } else { format!("value in {}", to.unit) };
     html! {
-        rect.band x=(x2(low)) width=(x2(high - low)) y=(x2(top)) height=(HEIGHT) {}
+        rect.fig-range x=(x2(low)) width=(x2(high - low)) y=(x2(top)) height=(HEIGHT) {}
         (plot.grid(&x_marks, &y_marks))
         path d=(path(&outline)) fill=(PALE) stroke=(BLUE) stroke-width="1.2" {}
         @if let Some(nominal) = of.nominal {
             @let x = plot.x(nominal * to.factor);
-            line.said x1=(x2(x)) x2=(x2(x)) y1=(x2(top)) y2=(x2(top + HEIGHT)) {}
+            line.fig-note x1=(x2(x)) x2=(x2(x)) y1=(x2(top)) y2=(x2(top + HEIGHT)) {}
         }
         text x=(x2(LEFT)) y=(x2(top - 8.0)) font-size=(SMALL) { "shaded: 95 % of the values; dashed: nominal" }
-        (plot.frame(&x_marks, &y_marks, [&label, "share of values in %"], FONT_SIZE))
+        (plot.frame(&x_marks, &y_marks, [&label, "share of values in %"]))
     }
 }
 
@@ -108,7 +106,7 @@ fn bars(of: &QuantityScatter, top: f64) -> Markup {
             @let y = top + 24.0 + ROW * k as f64;
             text x=(SHARES) y=(x2(y - 3.0)) font-size=(SMALL) { (inputs) }
             (share_bar(share, y))
-            line.frame x1=(x2(middle)) x2=(x2(middle)) y1=(x2(y - 2.0)) y2=(x2(y + BAR + 2.0)) {}
+            line.fig-frame x1=(x2(middle)) x2=(x2(middle)) y1=(x2(y - 2.0)) y2=(x2(y + BAR + 2.0)) {}
             @if let Some([low, high]) = relative(inputs) {
                 @for (value, colour) in [(low, ORANGE), (high, BLUE)] {
                     @let (from, to) = (middle.min(change(value)), middle.max(change(value)));
@@ -128,8 +126,8 @@ fn share_bar(Share { first, total, first_interval, .. }: &Share, y: f64) -> Mark
     html! {
         rect x=(SHARES) width=(x2(length(*total))) y=(x2(y)) height=(BAR) fill=(PALE) {}
         rect x=(SHARES) width=(x2(length(*first))) y=(x2(y)) height=(BAR) fill=(BLUE) {}
-        line.frame x1=(x2(low)) x2=(x2(high)) y1=(x2(y + 0.5 * BAR)) y2=(x2(y + 0.5 * BAR)) {}
+        line.fig-frame x1=(x2(low)) x2=(x2(high)) y1=(x2(y + 0.5 * BAR)) y2=(x2(y + 0.5 * BAR)) {}
         text x=(x2(SHARES + COLUMN + 4.0)) y=(x2(y + 0.8 * BAR)) font-size=(SMALL - 1.0) { (format!("{:.0} %", 100.0 * first)) }
-        rect.frame x=(SHARES) width=(COLUMN) y=(x2(y)) height=(BAR) {}
+        rect.fig-frame x=(SHARES) width=(COLUMN) y=(x2(y)) height=(BAR) {}
     }
 }

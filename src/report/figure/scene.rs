@@ -6,36 +6,19 @@
 
 use crate::curves::CommonAxis;
 use crate::format::significant;
-use crate::plot::svg::{FONT_SIZE, text_width, x2};
-use crate::plot::ticks::{tick_label, ticks};
+use crate::plot::svg::{Svg, Theme, text_width, x2};
 use crate::report::SceneReport;
 use crate::report::figure::geometry::{FigureGeometry, PanelOf};
-use crate::report::figure::lines::stroke;
-use crate::report::figure::lines::{Line, lines, measured_lines};
+use crate::report::figure::lines::{Line, lines, measured_lines, stroke};
 use crate::report::figure::panel::panel;
 use crate::report::figure::residuals::residuals;
 use crate::report::kinds;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 /// Height of a row of the legend in px.
 const LEGEND_ROW: f64 = 20.0;
 /// Widths in mm a figure of its own can have.
 pub const FIGURE_WIDTHS: std::ops::RangeInclusive<f64> = 75.0..=300.0;
-
-/// Where the colours come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Theme {
-    /// White background, colours in the drawing: a file of its own.
-    Standalone,
-    /// No colours: the page it stands in gives them, light or dark.
-    Inline,
-}
-
-/// Colours of the stand-alone drawing; the page's style sheet has the same classes.
-const STYLE: &str = "\
-.fig-text{fill:#1a1a1a}.fig-frame{stroke:#444;fill:none}.fig-grid{stroke:#e3e3e3}\
-.fig-box{fill:#ececec;stroke:#bdbdbd}.fig-band{fill:#d0d0d0}.fig-halo{stroke:#fff}\
-.fig-reference{stroke:#1a1a1a}.fig-A{stroke:#d55e00}.fig-B{stroke:#0072b2}.fig-C{stroke:#009e73}.fig-measured{stroke:#cc79a7}.fig-other{stroke:#8a6d00}.fig-other-2{stroke:#6a3d9a}.fig-other-3{stroke:#9e1b4f}.fig-other-4{stroke:#5c5c5c}";
 
 /// What can be measured: the bodies, by their motion.
 const MEASURED: [PanelOf; 2] = [
@@ -61,11 +44,6 @@ pub fn figure(report: &SceneReport, theme: Theme) -> String {
     }
 }
 
-/// The figure for a page on a phone: its panels as narrow as the screen, with type of the same size as on a wide page.
-pub(crate) fn phone_figure(report: &SceneReport) -> String {
-    scene_drawing(report, &FigureGeometry::PHONE, Theme::Inline)
-}
-
 /// The figure for a paper, `width` mm wide (within [`FIGURE_WIDTHS`]), as stand-alone SVG with its size in mm and type of
 /// 7.5 pt or more.
 pub fn printed_figure(report: &SceneReport, width: f64) -> String {
@@ -86,19 +64,10 @@ fn scene_drawing(report: &SceneReport, geometry: &FigureGeometry, theme: Theme) 
 /// The figure of the first measured record beside reference and models (Fig. 12): displacement and velocity of the
 /// bodies, filtered to the instrument's bandwidth. `None` if nothing was measured.
 pub fn measured_figure(report: &SceneReport, theme: Theme) -> Option<String> {
-    measured_drawing(report, &FigureGeometry::PAGE, theme)
-}
-
-/// As [`measured_figure`], for a page on a phone.
-pub(crate) fn phone_measured_figure(report: &SceneReport) -> Option<String> {
-    measured_drawing(report, &FigureGeometry::PHONE, Theme::Inline)
-}
-
-fn measured_drawing(report: &SceneReport, geometry: &FigureGeometry, theme: Theme) -> Option<String> {
     let measured = report.comparison.measured.as_ref()?;
     let title = format!("{}: measurement, reduced models and finite-element reference", report.scene.name);
     let lines = measured_lines(measured);
-    Some(drawing(&title, geometry, &MEASURED, &lines, Some(measured.window), theme))
+    Some(drawing(&title, &FigureGeometry::PAGE, &MEASURED, &lines, Some(measured.window), theme))
 }
 
 fn drawing(
@@ -116,34 +85,21 @@ fn drawing(
     let pair_height = geometry.pair_height();
     let height = top + count * pair_height + (count - 1.0) * gap + bottom;
     let end = axis.map_or(1.0, |a| a.end * 1e6);
-    let size = |px: f64| match (theme, geometry.millimetres) {
-        (Theme::Inline, _) => None,
-        (Theme::Standalone, None) => Some(px.to_string()),
-        (Theme::Standalone, Some(mm)) => Some(format!("{:.3}mm", px * mm)),
-    };
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {width} {height}"))
-            width=[size(width)] height=[size(height)]
-            font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) role="img" {
-            title { (title) }
-            @if theme == Theme::Standalone {
-                style { (PreEscaped(STYLE)) }
-                rect width=(width) height=(height) fill="#ffffff" {}
-            }
-            (legend.drawing)
-            @for (k, shown) in panels.iter().enumerate() {
-                (panel(geometry, shown, top + k as f64 * (pair_height + gap), end, lines, axis))
-                (residuals(geometry, shown, top + k as f64 * (pair_height + gap) + panel_height, end, lines, axis))
-            }
-            (time_labels(geometry, end, height))
-            @if lines.is_empty() {
-                text.fig-text x=(width / 2.0) y=(top + panel_height / 2.0) text-anchor="middle" {
-                    "The history of the reference is damaged and can't be drawn."
-                }
+    let time = geometry.plot(height - bottom, 0.0, end, [0.0, 1.0]);
+    let content = html! {
+        (legend.drawing)
+        @for (k, shown) in panels.iter().enumerate() {
+            (panel(geometry, shown, top + k as f64 * (pair_height + gap), end, lines, axis))
+            (residuals(geometry, shown, top + k as f64 * (pair_height + gap) + panel_height, end, lines, axis))
+        }
+        (time.below(&geometry.instants(&time), "Time in µs"))
+        @if lines.is_empty() {
+            text x=(width / 2.0) y=(top + panel_height / 2.0) text-anchor="middle" {
+                "The history of the reference is damaged and can't be drawn."
             }
         }
-    }
-    .into_string()
+    };
+    Svg::new(title, [width, height], theme).printed(geometry.millimetres).around(&content).into_string()
 }
 
 /// Names of the lines above the panels, in as many rows as they need.
@@ -172,23 +128,9 @@ impl FigureLegend {
         let drawing = html! {
             @for (x, y, line, name) in items {
                 (stroke(line, &format!("M{x:.2} {y}L{:.2} {y}", x + 30.0)))
-                text.fig-text x=(x2(x + 37.0)) y=(y + 4.5) { (name) }
+                text x=(x2(x + 37.0)) y=(y + 4.5) { (name) }
             }
         };
         FigureLegend { height: 26.0 + LEGEND_ROW * f64::from(row), drawing }
-    }
-}
-
-fn time_labels(geometry: &FigureGeometry, end: f64, height: f64) -> Markup {
-    let marks = ticks(0.0, end, (geometry.inner_width() / 80.0) as usize);
-    html! {
-        @for t in &marks {
-            text.fig-text x=(x2(geometry.x_of(*t, end))) y=(height - geometry.bottom + 19.0) text-anchor="middle" {
-                (tick_label(*t, &marks))
-            }
-        }
-        text.fig-text x=(geometry.left + 0.5 * geometry.inner_width()) y=(height - 9.0) text-anchor="middle" {
-            "Time in µs"
-        }
     }
 }

@@ -39,8 +39,8 @@ impl DrawingScale {
         let length = round_below(WANTED / self.factor);
         let end = x + length * self.factor;
         html! {
-            path.fig-frame d=(format!("M{0} {1}V{2}H{3}V{1}", x2(x), x2(y - 5.0), x2(y), x2(end))) {}
-            text.fig-text x=(x2(end + 5.0)) y=(x2(y)) { (measure(length, "m")) }
+            path.fig-frame data-scale=(self.factor) d=(format!("M{0} {1}V{2}H{3}V{1}", x2(x), x2(y - 5.0), x2(y), x2(end))) {}
+            text x=(x2(end + 5.0)) y=(x2(y)) { (measure(length, "m")) }
         }
     }
 }

@@ -80,11 +80,6 @@ pub(crate) fn named_as(heading: &str, quantity: &str) -> Markup {
     }
 }
 
-/// A drawing as wide as a page, and the same as wide as a phone; the screen decides which is seen.
-pub(crate) fn drawn(wide: &str, narrow: &str) -> Markup {
-    html! { div.wide { (PreEscaped(wide)) } div.narrow { (PreEscaped(narrow)) } }
-}
-
 /// A drawing with type that must not shrink with the screen: it scrolls by itself.
 pub(crate) fn detailed(name: &str, drawing: &Markup) -> Markup {
     html! { div.scroll.detailed role="region" tabindex="0" aria-label=(name) { (drawing) } }

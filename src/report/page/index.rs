@@ -1,22 +1,36 @@
 //! The page of all scenes: a row per scene and model, by folder, which sorts and can be searched.
 
 use crate::comparison::{AMONG, Verdict};
+use crate::error::Result;
 use crate::format::{percent, prefixed, significant, words};
 use crate::plot::colours::look;
 use crate::report::Report;
+use crate::report::export::Export;
 use crate::report::figure::thumbnail;
 use crate::report::overview::{ModelOverview, Overview, RowOverview};
 use crate::report::page::coverage;
 use crate::report::page::html::{EFFICIENCY, badge, named, number, page, scrolled, worded};
 use crate::report::page::validated_map::ValidatedMap;
 use crate::report::run_times::marked;
-use crate::report::standing;
-use crate::report::standing::Standing;
+use crate::report::standing::{self, Folder, Standing};
 use crate::report::trust::size_class;
 use maud::{Markup, PreEscaped, html};
 
 /// Sorting and searching; without it the table is what it is.
 pub(crate) const SCRIPT: &str = include_str!("assets/index.js");
+
+/// The page of all scenes of a folder.
+pub(crate) struct Index;
+
+impl Export<Folder<'_>> for Index {
+    fn ending(&self) -> &'static str {
+        "html"
+    }
+
+    fn bytes(&self, folder: &Folder) -> Result<Vec<u8>> {
+        Ok(index_of(folder.report, folder.scenes).into_bytes())
+    }
+}
 
 /// The page with the verdict of every scene and model.
 pub fn index_page(report: &Report) -> String {

@@ -2,7 +2,7 @@
 
 use crate::report::SceneReport;
 use crate::report::figure::geometry::PanelOf;
-use crate::report::page::html::drawn;
+use crate::report::page::html::detailed;
 use crate::report::page::page_data::{curves, embedded};
 use maud::{Markup, PreEscaped, html};
 
@@ -13,9 +13,8 @@ const PANELS: &str = include_str!("assets/panels.js");
 /// Style sheet of the panels.
 pub(crate) const STYLE: &str = include_str!("assets/uPlot.min.css");
 
-/// The place of the panels: drawn (SVG, for a wide page and for a phone) for print and without scripts, made interactive by
-/// the script.
-pub(crate) fn panels(wide: &str, narrow: &str) -> Markup {
+/// The place of the panels: a `drawing` (SVG) for print and without scripts, made interactive by the script.
+pub(crate) fn panels(drawing: String) -> Markup {
     html! {
         div.live {
             div #controls role="group" aria-label="Curves shown" {}
@@ -23,7 +22,7 @@ pub(crate) fn panels(wide: &str, narrow: &str) -> Markup {
             div #time role="group" aria-label="Time axis of all panels" {}
             p.soft { "Drag across a panel to zoom all of them, double-click to see everything again." }
         }
-        figure.drawn { (drawn(wide, narrow)) }
+        figure.drawn { (detailed("Curves", &PreEscaped(drawing))) }
     }
 }
 

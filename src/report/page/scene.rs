@@ -1,8 +1,9 @@
 //! The page of one scene, whatever its kind: what to trust first, then the curves, then everything that backs it.
 
+use crate::error::Result;
 use crate::format::{model_name, prefixed, with_unit};
 use crate::report::conclusion::assumptions;
-use crate::report::figure::scene::phone_figure;
+use crate::report::export::Export;
 use crate::report::page::facts::facts;
 use crate::report::page::html::{assumptions_badge, badge, model_badge, page};
 use crate::report::page::section::discrepancy::{checks, contradictions, model_section};
@@ -12,6 +13,19 @@ use crate::report::page::{discrepancy_picture, first_screen, interactive};
 use crate::report::{SceneReport, Theme, figure, kinds};
 use crate::validated::Place;
 use maud::{Markup, html};
+
+/// The page of a scene.
+pub(crate) struct Page;
+
+impl Export<SceneReport<'_>> for Page {
+    fn ending(&self) -> &'static str {
+        "html"
+    }
+
+    fn bytes(&self, scene: &SceneReport) -> Result<Vec<u8>> {
+        Ok(scene_page(scene).into_bytes())
+    }
+}
 
 /// The page of one scene.
 pub fn scene_page(report: &SceneReport) -> String {
@@ -85,7 +99,7 @@ fn validated(report: &SceneReport) -> Markup {
 fn curves(report: &SceneReport) -> Markup {
     let scene = &report.comparison.scene;
     html! {
-        (interactive::panels(&figure(report, Theme::Inline), &phone_figure(report)))
+        (interactive::panels(figure(report, Theme::Inline)))
         p.soft {
             (kinds::of(report.scene).curves_told()) " Shaded: the uncertainty (95 %) of the reference. "
             a href=(format!("{scene}.svg")) { "SVG" } " · "

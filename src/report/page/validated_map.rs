@@ -3,12 +3,12 @@
 
 use crate::format::{percent, percent_above, significant, words};
 use crate::plot::axis::{Plot, PlotAxis};
-use crate::plot::svg::{FONT_SIZE, x2};
+use crate::plot::svg::{FONT_SIZE, Svg, Theme, x2};
 use crate::report::page::discrepancy_picture::mark;
 use crate::report::page::html::scrolled;
 use crate::report::trust::size_class;
 use crate::validated::{MEASURES, NEAR, Place, Row, Validation};
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 /// Name of the drawing beside a report.
 pub(crate) const FILE: &str = "validated.svg";
@@ -16,19 +16,15 @@ pub(crate) const FILE: &str = "validated.svg";
 const MODELS: [&str; 2] = ["B", "C"];
 /// Size of a view, and the room around its axes, px.
 const WIDTH: f64 = 380.0;
-const HEIGHT: f64 = 230.0;
+const HEIGHT: f64 = 234.0;
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 10.0;
 const TOP: f64 = 26.0;
-const BOTTOM: f64 = 42.0;
+const BOTTOM: f64 = 46.0;
 /// Most marks on an axis.
 const MARKS: usize = 10;
 /// What the axes reach beyond the outermost scene, as a factor.
 const ROOM: f64 = 1.7;
-
-/// Colours of the stand-alone drawing; the page's style sheet has the same classes.
-const STYLE: &str = ".fig-text{fill:#1a1a1a}.fig-frame{stroke:#444;fill:none}.fig-grid{stroke:#e3e3e3}\
-.size-small{fill:#12572e}.size-medium{fill:#b07300}.size-large{fill:#a11b1b}";
 
 /// The validations that can be drawn, and where the scene of the page lies.
 pub(crate) struct ValidatedMap<'a> {
@@ -65,16 +61,11 @@ impl<'a> ValidatedMap<'a> {
         let views: Vec<_> = views().collect();
         let place = |k: usize| ((k % 2) as f64 * WIDTH, (k / 2) as f64 * HEIGHT);
         let (width, height) = (2.0 * WIDTH, HEIGHT * MODELS.len() as f64);
-        html! {
-            svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {width} {height}")) width=(width) height=(height)
-                font-family="DejaVu Sans, Verdana, sans-serif" font-size=(FONT_SIZE) role="img" {
-                title { "Scenes in which models were compared with references" }
-                style { (PreEscaped(STYLE)) }
-                rect width=(width) height=(height) fill="#ffffff" {}
-                @for (k, (model, measure)) in views.into_iter().enumerate() { (self.view(model, measure, Some(place(k)))) }
-            }
-        }
-        .into_string()
+        let drawing = html! {
+            @for (k, (model, measure)) in views.into_iter().enumerate() { (self.view(model, measure, Some(place(k)))) }
+        };
+        let title = "Scenes in which models were compared with references";
+        Svg::new(title, [width, height], Theme::Standalone).around(&drawing).into_string()
     }
 
     /// One view: `measure` over the first one, of `model`.
@@ -99,17 +90,11 @@ impl<'a> ValidatedMap<'a> {
         html! {
             svg viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) x=[at.map(|at| at.0)] y=[at.map(|at| at.1)] width=[at.map(|_| WIDTH)]
                 height=[at.map(|_| HEIGHT)] font-size=(FONT_SIZE) role="img" aria-label=(told) {
-                @for mark in &x_marks { @let x = plot.x(*mark);
-                    line.fig-grid x1=(x2(x)) x2=(x2(x)) y1=(TOP) y2=(HEIGHT - BOTTOM) {}
-                    text.fig-text x=(x2(x)) y=(HEIGHT - BOTTOM + 17.0) text-anchor="middle" { (plot.x.label(*mark, &x_marks)) }
-                }
-                @for mark in &y_marks { @let y = plot.y(*mark);
-                    line.fig-grid x1=(LEFT) x2=(WIDTH - RIGHT) y1=(x2(y)) y2=(x2(y)) {}
-                    text.fig-text x=(LEFT - 6.0) y=(x2(y + 4.5)) text-anchor="end" { (plot.y.label(*mark, &y_marks)) }
-                }
-                rect.fig-frame x=(plot.left) y=(plot.top) width=(plot.width) height=(plot.height) {}
-                text.fig-text x=(LEFT) y="17" { tspan font-weight="600" { (model) } ": " (MEASURES[measure]) }
-                text.fig-text x=(0.5 * (LEFT + WIDTH - RIGHT)) y=(HEIGHT - 7.0) text-anchor="middle" { (MEASURES[0]) }
+                (plot.grid(&x_marks, &y_marks))
+                (plot.below(&x_marks, MEASURES[0]))
+                (plot.beside(&y_marks, ""))
+                (plot.outline())
+                text x=(LEFT) y="17" { tspan font-weight="600" { (model) } ": " (MEASURES[measure]) }
                 @if let Some(here) = &self.here {
                     @let (x, y) = plot.at(measures(here));
                     @let [left, right] = [1.0 / NEAR, NEAR].map(|f| plot.x(f * measures(here).0).clamp(LEFT, WIDTH - RIGHT));

@@ -2,7 +2,7 @@
 
 use crate::format::{measure, short};
 use crate::kinds::plate_impact::PlateImpact;
-use crate::plot::svg::x2;
+use crate::plot::svg::{Svg, Theme, x2};
 use crate::report::figure::scene_drawing::{DrawingScale, materials};
 use crate::scene::{Edge, Material, Shape};
 use maud::{Markup, html};
@@ -38,20 +38,17 @@ pub(super) fn plate_picture(scene: &PlateImpact) -> Markup {
     let thickness = (plate.thickness * factor).max(THINNEST);
     let z_outer = 0.5 * plate.thickness + r_outer;
     let z_inner = -0.5 * plate.thickness - inner.gap - r_inner;
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) role="img" data-scale=(factor)
-            font-family="DejaVu Sans, Verdana, sans-serif" font-size="13" {
-            title { "The scene in section, to scale" }
-            (edge(plate.edge, plate.radius, thickness, &scale))
-            rect.fig-body.plate x=(x2(scale.x(-plate.radius))) width=(x2(2.0 * plate.radius * factor))
-                y=(x2(scale.z(0.0) - 0.5 * thickness)) height=(x2(thickness)) {}
-            (body(&outer.shape, "outer", r_outer, [outer.offset, z_outer], 1.0, &scale))
-            (body(&inner.shape, "inner", r_inner, [0.0, z_inner], -1.0, &scale))
-            path.fig-frame transform=[aslant] d=(format!("M{0} {1}V{2}m-4-7l4 7l4-7", x2(struck), x2(surface - 34.0), x2(surface - 6.0))) {}
-            text.fig-text x=(x2(struck + 10.0)) y=(x2(surface - 18.0)) { (measure(outer.speed, "m/s")) }
-            (scale.bar(MARGIN, height - 6.0))
-        }
-    }
+    let drawing = html! {
+        (edge(plate.edge, plate.radius, thickness, &scale))
+        rect.fig-body.plate x=(x2(scale.x(-plate.radius))) width=(x2(2.0 * plate.radius * factor))
+            y=(x2(scale.z(0.0) - 0.5 * thickness)) height=(x2(thickness)) {}
+        (body(&outer.shape, "outer", r_outer, [outer.offset, z_outer], 1.0, &scale))
+        (body(&inner.shape, "inner", r_inner, [0.0, z_inner], -1.0, &scale))
+        path.fig-frame transform=[aslant] d=(format!("M{0} {1}V{2}m-4-7l4 7l4-7", x2(struck), x2(surface - 34.0), x2(surface - 6.0))) {}
+        text x=(x2(struck + 10.0)) y=(x2(surface - 18.0)) { (measure(outer.speed, "m/s")) }
+        (scale.bar(MARGIN, height - 6.0))
+    };
+    Svg::new("The scene in section, to scale", [WIDTH, height], Theme::Inline).around(&drawing)
 }
 
 /// Of a body of which the tip alone is known that of the tip, as far as it can be drawn.
@@ -80,7 +77,7 @@ fn body(shape: &Shape, name: &str, radius: f64, centre: [f64; 2], side: f64, sca
                 path.fig-frame stroke-dasharray="3 3" d=(format!("M{} {}V{}H{}V{}", x2(x - r), x2(y), x2(y - side * r), x2(x + r), x2(y))) {}
             },
         }
-        text.fig-text x=(x2(label.0)) y=(x2(label.1)) text-anchor="middle" { (name) }
+        text x=(x2(label.0)) y=(x2(label.1)) text-anchor="middle" { (name) }
     }
 }
 

@@ -2,11 +2,11 @@
 
 use crate::format::{measure, short};
 use crate::kinds::seal_seat::{SealSeat, SphereBody};
-use crate::plot::svg::x2;
+use crate::plot::svg::{Svg, x2};
 use crate::report::Theme;
 use crate::report::figure::scene_drawing::{DrawingScale, materials};
 use crate::report::summary_column::degrees;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 const WIDTH: f64 = 760.0;
 /// Width in px where the page decides on the rest.
@@ -28,11 +28,6 @@ pub struct Arrow {
     pub dashes: &'static str,
 }
 
-/// Colours of the stand-alone drawing; the page's style sheet has the same classes.
-const STYLE: &str = "\
-.fig-text{fill:#1a1a1a}.fig-frame{stroke:#444;fill:none}.fig-body{fill:#dfe5ea;stroke:#444}.fig-seat{fill:#f0dfb8;stroke:#9a7f3c}\
-.fig-hollow{fill:#fff}.fig-intended{stroke:#777}.fig-reference{stroke:#1a1a1a}.fig-C{stroke:#009e73}";
-
 /// The section with names and directions of flight: a file of its own, with a legend, or as a page shows it.
 pub fn seat_picture(scene: &SealSeat, arrows: &[Arrow], theme: Theme) -> String {
     let (seat, sphere, actuator) = (&scene.seat, &scene.sphere, &scene.actuator);
@@ -49,32 +44,27 @@ pub fn seat_picture(scene: &SealSeat, arrows: &[Arrow], theme: Theme) -> String 
     let section_height = 2.0 * MARGIN + (top - bottom) * factor;
     let height = section_height + legend;
     let fastest = arrows.iter().map(|a| a.velocity[0].hypot(a.velocity[1])).fold(f64::MIN_POSITIVE, f64::max);
-    let name = |name: &str, anchor: &str, x: f64, z: f64| html! { text.fig-text x=(x2(scale.x(x))) y=(x2(scale.z(z) + 4.5)) text-anchor=(anchor) { (name) } };
+    let name = |name: &str, anchor: &str, x: f64, z: f64| html! { text x=(x2(scale.x(x))) y=(x2(scale.z(z) + 4.5)) text-anchor=(anchor) { (name) } };
     let stroke = if alone { 3.0 } else { 2.0 };
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {width} {height:.1}")) width=[alone.then_some(width)]
-            height=[alone.then(|| format!("{height:.1}"))] data-scale=(factor)
-            font-family="DejaVu Sans, Verdana, sans-serif" font-size="13" role="img" {
-            title { "Section of the seal seat with the directions of the sphere's flight" }
-            @if alone { style { (PreEscaped(STYLE)) } rect width=(width) height=(format!("{height:.1}")) fill="#ffffff" {} }
-            (seat_body(scene, &scale))
-            @for &x in &actuator.tip_positions {
-                path.fig-body d=(tip(x, actuator.tip_radius, bottom, &scale)) {}
-                (name("actuator", "middle", x, 0.5 * bottom))
-            }
-            circle.fig-body.sphere cx=(x2(scale.x(cx))) cy=(x2(scale.z(cz))) r=(x2(sphere.radius * factor)) {}
-            (name("sphere ", "end", cx - 1.1 * sphere.radius, cz))
-            (name("seat", "middle", 0.5 * seat.island_length - 0.6 * sphere.radius, 0.5 * seat.membrane_thickness + 0.25 * seat.island_height))
-            @for arrow in arrows { (draw_arrow(arrow, [cx, cz], reach / fastest, stroke, &scale)) }
-            (scale.bar(width - 120.0, 24.0))
-            @if alone { @for (k, arrow) in arrows.iter().enumerate() {
-                @let y = section_height + 24.0 * k as f64 + 4.0;
-                line class=(arrow.class) x1="20" x2="60" y1=(y) y2=(y) stroke-width="3" stroke-dasharray=(dashes(arrow)) {}
-                text.fig-text x="70" y=(y + 4.5) { (label(arrow)) }
-            } }
+    let drawing = html! {
+        (seat_body(scene, &scale))
+        @for &x in &actuator.tip_positions {
+            path.fig-body d=(tip(x, actuator.tip_radius, bottom, &scale)) {}
+            (name("actuator", "middle", x, 0.5 * bottom))
         }
-    }
-    .into_string()
+        circle.fig-body.sphere cx=(x2(scale.x(cx))) cy=(x2(scale.z(cz))) r=(x2(sphere.radius * factor)) {}
+        (name("sphere ", "end", cx - 1.1 * sphere.radius, cz))
+        (name("seat", "middle", 0.5 * seat.island_length - 0.6 * sphere.radius, 0.5 * seat.membrane_thickness + 0.25 * seat.island_height))
+        @for arrow in arrows { (draw_arrow(arrow, [cx, cz], reach / fastest, stroke, &scale)) }
+        (scale.bar(width - 120.0, 24.0))
+        @if alone { @for (k, arrow) in arrows.iter().enumerate() {
+            @let y = section_height + 24.0 * k as f64 + 4.0;
+            line class=(arrow.class) x1="20" x2="60" y1=(y) y2=(y) stroke-width="3" stroke-dasharray=(dashes(arrow)) {}
+            text x="70" y=(y + 4.5) { (label(arrow)) }
+        } }
+    };
+    let title = "Section of the seal seat with the directions of the sphere's flight";
+    Svg::new(title, [width, height], theme).around(&drawing).into_string()
 }
 
 /// The legend of the section on a page.

@@ -5,7 +5,7 @@ use crate::flight::{Flight, Landscape, Launch, Setup, Vector, fly};
 use crate::format;
 use crate::format::{model_name, prefixed, with_unit};
 use crate::kinds::flight::flight_of;
-use crate::plot::svg::x2;
+use crate::plot::svg::{Svg, Theme, x2};
 use crate::report::SceneReport;
 use crate::report::figure::landing_map::map_picture;
 use crate::report::figure::scene_drawing::DrawingScale;
@@ -123,17 +123,15 @@ fn section(setup: &Setup, flight: &Flight, launch: &Launch, scatter: f64) -> Mar
         let end = seats[0] + BAND * setup.radius * Vector::new(angle.sin(), angle.cos());
         [[seats[0].x, seats[0].y], [end.x, end.y]]
     };
-    html! {
-        svg viewBox=(format!("0 0 {WIDTH} {height:.1}")) role="img" {
-            title { "Path of the sphere in the chamber" }
-            polygon.fig-hollow points=(scale.points(&corners)) stroke="#9a7f3c" stroke-width="1.5" {}
-            @for side in [-1.0, 1.0] { polyline points=(scale.points(&ray(launch.angle + side * scatter))) fill="none" stroke="#777" stroke-width="1" {} }
-            @for seat in seats {
-                circle cx=(x2(scale.x(seat.x))) cy=(x2(scale.z(seat.y))) r=(x2(setup.radius * factor)) fill="none" stroke="#777" stroke-dasharray="4 3" {}
-            }
-            polyline points=(scale.points(&path)) fill="none" stroke="#009e73" stroke-width="2" stroke-linejoin="round" {}
+    let drawing = html! {
+        polygon.fig-hollow points=(scale.points(&corners)) stroke="#9a7f3c" stroke-width="1.5" {}
+        @for side in [-1.0, 1.0] { polyline points=(scale.points(&ray(launch.angle + side * scatter))) fill="none" stroke="#777" stroke-width="1" {} }
+        @for seat in seats {
+            circle cx=(x2(scale.x(seat.x))) cy=(x2(scale.z(seat.y))) r=(x2(setup.radius * factor)) fill="none" stroke="#777" stroke-dasharray="4 3" {}
         }
-    }
+        polyline points=(scale.points(&path)) fill="none" stroke="#009e73" stroke-width="2" stroke-linejoin="round" {}
+    };
+    Svg::new("Path of the sphere in the chamber", [WIDTH, height], Theme::Inline).around(&drawing)
 }
 
 /// Energy over x, on the same x as the section.
@@ -154,14 +152,12 @@ fn landscape_picture(setup: &Setup, landscape: &Landscape, launch: &Launch) -> M
         .collect();
     let saddle = landscape.saddle;
     let told = |energy: f64| with_unit(energy, prefixed("J", energy), 3);
-    html! {
-        svg viewBox=(format!("0 0 {WIDTH} {LANDSCAPE}")) role="img" font-size="13" {
-            title { "Energy landscape" }
-            polyline points=(points.join(" ")) fill="none" stroke="currentColor" stroke-width="1.5" {}
-            line x1=(MARGIN) x2=(WIDTH - MARGIN) y1=(x2(y(kinetic))) y2=(x2(y(kinetic))) stroke="#009e73" stroke-dasharray="6 4" {}
-            text.fig-text x=(WIDTH - MARGIN) y=(x2(y(kinetic) - 5.0)) text-anchor="end" { "launch " (told(kinetic)) }
-            circle cx=(x2(x(saddle.x))) cy=(x2(y(saddle.energy))) r="4" fill="#d55e00" {}
-            text.fig-text x=(x2(x(saddle.x) + 8.0)) y=(x2(y(saddle.energy) - 6.0)) { "saddle " (told(saddle.energy)) }
-        }
-    }
+    let drawing = html! {
+        polyline points=(points.join(" ")) fill="none" stroke="currentColor" stroke-width="1.5" {}
+        line x1=(MARGIN) x2=(WIDTH - MARGIN) y1=(x2(y(kinetic))) y2=(x2(y(kinetic))) stroke="#009e73" stroke-dasharray="6 4" {}
+        text x=(WIDTH - MARGIN) y=(x2(y(kinetic) - 5.0)) text-anchor="end" { "launch " (told(kinetic)) }
+        circle cx=(x2(x(saddle.x))) cy=(x2(y(saddle.energy))) r="4" fill="#d55e00" {}
+        text x=(x2(x(saddle.x) + 8.0)) y=(x2(y(saddle.energy) - 6.0)) { "saddle " (told(saddle.energy)) }
+    };
+    Svg::new("Energy landscape", [WIDTH, LANDSCAPE], Theme::Inline).around(&drawing)
 }

@@ -4,11 +4,10 @@ use crate::format::{prefixed, significant, with_unit, words};
 use crate::kinds::KINDS;
 use crate::measured::{AlignedRecord, Measured, Partner};
 use crate::plot::{ChartPanel, Series, chart};
-use crate::report::figure::scene::phone_measured_figure;
-use crate::report::page::html::{drawn, scrolled};
+use crate::report::page::html::{detailed, scrolled};
 use crate::report::page::prose::prose;
 use crate::report::{SceneReport, Theme, measured_figure};
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
 /// Rows of a table, the heading first.
 type Rows = Vec<Vec<String>>;
@@ -184,8 +183,8 @@ pub(crate) fn measured_html(report: &SceneReport) -> Markup {
         p { (sentence(measured)) }
         @for (record, effect) in effects(measured) { p { strong { "Warning, " (record) ": " } (prose(effect)) } }
         figure {
-            @if let Some((wide, narrow)) = measured_figure(report, Theme::Inline).zip(phone_measured_figure(report)) {
-                (drawn(&wide, &narrow))
+            @if let Some(drawing) = measured_figure(report, Theme::Inline) {
+                (detailed("Measured and computed motion", &PreEscaped(drawing)))
             }
             figcaption {
                 "The first record with reference and models. " (bandwidth(measured)) " "

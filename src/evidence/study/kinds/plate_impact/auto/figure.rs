@@ -2,46 +2,43 @@
 
 use super::{TOLERANCES, number};
 use crate::evidence::study::{Cell, Study};
+use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::colours::{MODELS, hex};
+use crate::plot::polyline::path;
+use crate::plot::{Svg, Theme};
 use maud::{Markup, html};
 
 const PANEL: f64 = 330.0;
-const MARGIN: (f64, f64, f64, f64) = (62.0, 36.0, 12.0, 52.0);
+const MARGIN: (f64, f64, f64, f64) = (72.0, 36.0, 12.0, 52.0);
 const LEGEND: f64 = 34.0;
-/// Decades of both axes.
-const DECADES: (i32, i32) = (-5, 0);
+/// Ends of both axes.
+const ERRORS: [f64; 2] = [1e-5, 1.0];
 
 /// The study as SVG. A mark above the diagonal is a true error larger than its estimate.
 pub fn figure(study: &Study) -> String {
     let width = TOLERANCES.len() as f64 * PANEL;
     let height = PANEL + LEGEND;
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(height) viewBox=(format!("0 0 {width} {height}"))
-            font-family="DejaVu Sans, Verdana, sans-serif" font-size="12" role="img" {
-            title { "Models chosen by auto: true error over estimated error" }
-            rect width=(width) height=(height) fill="#ffffff" {}
-            @for (k, tolerance) in TOLERANCES.iter().enumerate() {
-                g transform=(format!("translate({} 0)", k as f64 * PANEL)) { (panel(study, *tolerance)) }
-            }
-            @for (k, (model, colour)) in MODELS.iter().enumerate() {
-                circle cx=(70.0 + 110.0 * k as f64) cy=(height - 14.0) r="4" fill=(hex(*colour)) {}
-                text x=(80.0 + 110.0 * k as f64) y=(height - 10.0) fill="#1a1a1a" { "model " (model) }
-            }
-            circle cx="400" cy=(height - 14.0) r="4" fill="none" stroke="#1a1a1a" {}
-            text x="410" y=(height - 10.0) fill="#1a1a1a" { "no accuracy stated" }
+    let drawing = html! {
+        @for (k, tolerance) in TOLERANCES.iter().enumerate() {
+            g transform=(format!("translate({} 0)", k as f64 * PANEL)) { (panel(study, *tolerance)) }
         }
-    }
-    .into_string()
+        @for (k, (model, colour)) in MODELS.iter().enumerate() {
+            circle cx=(70.0 + 110.0 * k as f64) cy=(height - 14.0) r="4" fill=(hex(*colour)) {}
+            text x=(80.0 + 110.0 * k as f64) y=(height - 10.0) { "model " (model) }
+        }
+        circle cx="400" cy=(height - 14.0) r="4" fill="none" stroke="#1a1a1a" {}
+        text x="410" y=(height - 10.0) { "no accuracy stated" }
+    };
+    let title = "Models chosen by auto: true error over estimated error";
+    Svg::new(title, [width, height], Theme::Standalone).around(&drawing).into_string()
 }
 
 fn panel(study: &Study, tolerance: f64) -> Markup {
     let (left, top, right, bottom) = MARGIN;
-    let (wide, high) = (PANEL - left - right, PANEL - top - bottom);
-    let place = |error: f64| {
-        let (from, to) = (f64::from(DECADES.0), f64::from(DECADES.1));
-        ((error.log10() - from) / (to - from)).clamp(0.0, 1.0)
-    };
-    let (x, y) = (|error: f64| left + wide * place(error), |error: f64| top + high * (1.0 - place(error)));
+    let (width, height) = (PANEL - left - right, PANEL - top - bottom);
+    let axis = PlotAxis::over(ERRORS.into_iter(), true);
+    let plot = Plot { left, top, width, height, x: axis, y: axis };
+    let place = |estimated: f64, exact: f64| plot.at([estimated, exact].map(within).into());
     let rows: Vec<&Vec<Cell>> =
         study.rows.iter().filter(|row| number(row, "tolerance") == tolerance).collect();
     let colour = |row: &[Cell]| {
@@ -54,28 +51,26 @@ fn panel(study: &Study, tolerance: f64) -> Markup {
     let marks = rows.iter().filter_map(|row| {
         let (estimated, exact) = (number(row, "estimated_error"), number(row, "true_error"));
         (estimated > 0.0 && exact.is_finite())
-            .then(|| (x(estimated), y(exact), colour(row), number(row, "promised") == 1.0))
+            .then(|| (place(estimated, exact), colour(row), number(row, "promised") == 1.0))
     });
-    let (from, to) = (10f64.powi(DECADES.0), 10f64.powi(DECADES.1));
+    let decades = axis.marks(6);
+    let line = |ends: [(f64, f64); 2]| path(&ends.map(|end| plot.at(end)));
+    let [from, to] = ERRORS;
     html! {
-        text x=(left) y=(top - 14.0) fill="#1a1a1a" { "tolerance " (100.0 * tolerance) " %" }
-        @for decade in DECADES.0..=DECADES.1 {
-            @let at = 10f64.powi(decade);
-            line x1=(x(at)) x2=(x(at)) y1=(top) y2=(top + high) stroke="#e3e3e3" {}
-            line x1=(left) x2=(left + wide) y1=(y(at)) y2=(y(at)) stroke="#e3e3e3" {}
-            text x=(x(at)) y=(top + high + 17.0) text-anchor="middle" fill="#1a1a1a" { "1e" (decade) }
-            text x=(left - 6.0) y=(y(at) + 4.0) text-anchor="end" fill="#1a1a1a" { "1e" (decade) }
+        text x=(left) y=(top - 14.0) { "tolerance " (100.0 * tolerance) " %" }
+        (plot.grid(&decades, &decades))
+        path d=(line([(from, from), (to, to)])) stroke="#777777" {}
+        @for ends in [[(tolerance, from), (tolerance, to)], [(from, tolerance), (to, tolerance)]] {
+            path d=(line(ends)) stroke="#777777" stroke-dasharray="4 3" {}
         }
-        line x1=(x(from)) y1=(y(from)) x2=(x(to)) y2=(y(to)) stroke="#777777" {}
-        line x1=(x(tolerance)) x2=(x(tolerance)) y1=(top) y2=(top + high) stroke="#777777" stroke-dasharray="4 3" {}
-        line x1=(left) x2=(left + wide) y1=(y(tolerance)) y2=(y(tolerance)) stroke="#777777" stroke-dasharray="4 3" {}
-        rect x=(left) y=(top) width=(wide) height=(high) fill="none" stroke="#444444" {}
-        text x=(left + 0.5 * wide) y=(top + high + 37.0) text-anchor="middle" fill="#1a1a1a" { "estimated relative error" }
-        text transform=(format!("translate(15 {}) rotate(-90)", top + 0.5 * high)) text-anchor="middle" fill="#1a1a1a" {
-            "true relative error"
-        }
-        @for (x, y, colour, promised) in marks {
+        (plot.frame(&decades, &decades, ["estimated relative error", "true relative error"]))
+        @for ((x, y), colour, promised) in marks {
             circle cx=(format!("{x:.1}")) cy=(format!("{y:.1}")) r="3" stroke=(colour) fill=(if promised { &*colour } else { "none" }) {}
         }
     }
+}
+
+/// The error as far as the axes show it.
+fn within(error: f64) -> f64 {
+    error.clamp(ERRORS[0], ERRORS[1])
 }

@@ -1,8 +1,9 @@
-//! A history as a file: CSV or Parquet, with the columns of a reference's history.
+//! Apache Parquet.
 
+use super::Export;
+use super::csv::columns;
 use crate::error::{Error, Result};
 use crate::result::History;
-use crate::table_format::TableFormat;
 use parquet::basic::{Repetition, Type as Physical};
 use parquet::data_type::DoubleType;
 use parquet::errors::Result as Written;
@@ -12,33 +13,17 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use std::sync::Arc;
 
-/// `history` as the content of a file.
-///
-/// # Errors
-/// [`Error::Internal`] if it can't be written.
-pub fn history_file(history: &History, format: TableFormat) -> Result<Vec<u8>> {
-    match format {
-        TableFormat::Csv => csv(history).map_err(|e| Error::Internal(format!("writing CSV: {e}"))),
-        TableFormat::Parquet => {
-            parquet(history).map_err(|e| Error::Internal(format!("writing Parquet: {e}")))
-        }
-    }
-}
+/// A history with the units of its columns as metadata.
+pub struct Parquet;
 
-/// Name, unit and values of every column.
-fn columns(history: &History) -> Vec<(&'static str, &'static str, &[f64])> {
-    let curves = history.curves.iter().map(|curve| (curve.name, curve.unit, &curve.values[..]));
-    std::iter::once(("time", "s", &history.time[..])).chain(curves).collect()
-}
-
-fn csv(history: &History) -> std::result::Result<Vec<u8>, csv::Error> {
-    let columns = columns(history);
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(columns.iter().map(|(name, ..)| name))?;
-    for i in 0..history.len() {
-        writer.serialize(columns.iter().map(|(.., values)| values[i]).collect::<Vec<f64>>())?;
+impl Export<History> for Parquet {
+    fn ending(&self) -> &'static str {
+        "parquet"
     }
-    writer.into_inner().map_err(|e| e.into_error().into())
+
+    fn bytes(&self, history: &History) -> Result<Vec<u8>> {
+        parquet(history).map_err(|e| Error::Internal(format!("writing Parquet: {e}")))
+    }
 }
 
 fn parquet(history: &History) -> Written<Vec<u8>> {
