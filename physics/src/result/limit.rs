@@ -174,6 +174,10 @@ mod tests {
     fn only_what_exceeds_its_bound_is_warned_of() {
         assert_eq!(HERTZ.at("outer", 0.2).warning(), None);
         assert_eq!(HERTZ.at("outer", f64::NAN).warning(), None);
+        assert_eq!(HERTZ.at("outer", 0.0).warning(), None);
+        assert!(
+            HERTZ.at("outer", f64::INFINITY).warning().is_some_and(|said| said.contains(" is inf, above "))
+        );
         let told = HERTZ.at("outer", 0.25).warning().expect("beyond");
         assert!(
             told.starts_with("outer contact radius / tip radius is 0.25, above its limit of 0.2: "),
