@@ -12,7 +12,7 @@ use std::path::Path;
 /// project, with their contents.
 #[proc_macro]
 pub fn files(_: TokenStream) -> TokenStream {
-    let package = std::env::var("CARGO_MANIFEST_DIR").expect("cargo tells where the package is");
+    let package = std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets the folder of the package");
     let root = Path::new(&package).ancestors().find(|folder| folder.join("scenes").is_dir());
     let root = root.and_then(Path::to_str).expect("a package of the project");
     let mut found = BTreeMap::new();

@@ -248,7 +248,7 @@ fn table(document: &OptimumDocument) -> String {
             ));
         }
         if variable.on_bound {
-            lines.push("    on a bound: there may be a better one beyond".into());
+            lines.push("    on a bound: a better value may lie outside".into());
         }
     }
     if let Some(confirmation) = &document.confirmation {

@@ -23,7 +23,7 @@ pub struct Neighbourhood {
     pub bounds: [f64; 2],
     /// Value at the optimum.
     pub optimum: f64,
-    /// Whether the optimum lies on a bound: there may be a better one beyond.
+    /// Whether the optimum lies on a bound: a better value may lie outside.
     pub on_bound: bool,
     /// Range around the optimum within which the objective stays within 1 % of the best, cut at the bounds.
     pub range_within_1_percent: [f64; 2],

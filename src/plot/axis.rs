@@ -62,16 +62,21 @@ impl PlotAxis {
 
     /// Round numbers, about `wanted` of them; of many decades each second or later one.
     pub(crate) fn marks(&self, wanted: usize) -> Vec<f64> {
+        let chosen = if self.logarithmic { self.decades(wanted) } else { None };
+        chosen.unwrap_or_else(|| ticks(self.low, self.high, wanted))
+    }
+
+    /// Marks of a logarithmic axis; `None` if it is too short for them.
+    fn decades(&self, wanted: usize) -> Option<Vec<f64>> {
         let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
-        let powers = |every: usize, multiples: &'static [f64]| -> Vec<f64> {
+        let powers = |(every, multiples): (usize, &'static [f64])| -> Vec<f64> {
             let decades = decades.clone().step_by(every);
             let all = decades.flat_map(|k| multiples.iter().map(move |m| m * 10_f64.powi(k)));
             all.filter(|v| (self.low..=self.high).contains(v)).collect()
         };
-        let finer = std::iter::once(powers(1, &[1.0, 2.0, 5.0]));
-        let logarithmic = self.logarithmic.then(|| finer.chain((1..8).map(|every| powers(every, &[1.0]))));
-        let chosen = logarithmic.into_iter().flatten().find(|marks| (3..=wanted).contains(&marks.len()));
-        chosen.unwrap_or_else(|| ticks(self.low, self.high, wanted))
+        let candidates =
+            std::iter::once((1, &[1.0, 2.0, 5.0][..])).chain((1..8).map(|every| (every, &[1.0][..])));
+        candidates.map(powers).find(|marks| (3..=wanted).contains(&marks.len()))
     }
 
     /// The number at a mark.
@@ -177,6 +182,10 @@ mod tests {
         assert!((axis.between(10.0, 1000.0) - 100.0).abs() < 1e-9);
         assert_eq!(axis.marks(5), [1.0, 10.0, 100.0, 1000.0]);
         assert_eq!(PlotAxis::over([20.0, 400.0].into_iter(), true).marks(6), [20.0, 50.0, 100.0, 200.0]);
+        // of many decades every second one, as powers of ten
+        let wide = PlotAxis::over([1e-13, 1.0].into_iter(), true);
+        let labels: Vec<String> = wide.marks(7).iter().map(|mark| wide.label(*mark, &[])).collect();
+        assert_eq!(labels, ["1e−13", "1e−11", "1e−9", "1e−7", "1e−5", "0.001", "0.1"].map(str::to_owned));
         // within less than a decade, and where there is no logarithm
         assert_eq!(
             PlotAxis::over([3.0, 4.0].into_iter(), true).marks(5),

@@ -1,8 +1,8 @@
 //! PDF of a figure: the paths of its SVG, and its text, which can be searched and copied.
 
 use crate::error::{Error, Result};
-use crate::plot::pdf_text;
-use crate::plot::pdf_text::Glyphs;
+use crate::plot::pdf_text::{self, Glyphs};
+use crate::plot::png::{SVG_RESOLUTION, tree};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
@@ -14,7 +14,7 @@ use std::io::Write;
 /// Number of the font's first object.
 const FIRST_OF_FONT: i32 = 6;
 /// Points of a PDF per px of an SVG.
-const POINTS: f32 = 72.0 / crate::plot::png::SVG_RESOLUTION;
+const POINTS: f32 = 72.0 / SVG_RESOLUTION;
 
 fn internal(what: impl std::fmt::Display) -> Error {
     Error::Internal(format!("writing the figure as PDF: {what}"))
@@ -25,7 +25,7 @@ fn internal(what: impl std::fmt::Display) -> Error {
 /// # Errors
 /// [`Error::Internal`] if the SVG is not valid, or has what figures don't have: images, gradients, translucency.
 pub(crate) fn pdf(svg: &str, title: &str) -> Result<Vec<u8>> {
-    let tree = crate::plot::png::tree(svg)?;
+    let tree = tree(svg)?;
     let glyphs = Glyphs::of(tree.root());
     let content = compressed(&content(&tree, &glyphs)?)?;
     let [catalog, pages, page, contents, info] = [1, 2, 3, 4, 5].map(Ref::new);

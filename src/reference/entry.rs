@@ -124,7 +124,7 @@ fn check_mesh(folder: &Path, dofs: u64) -> Result<(), String> {
     match nodes {
         Some(nodes) if [2, 3].map(|d| nodes.checked_mul(d)).contains(&Some(dofs)) => Ok(()),
         Some(nodes) => Err(format!("has {nodes} nodes; the solution is of a mesh with {dofs} displacements")),
-        None => Err("does not say how many nodes it has".to_owned()),
+        None => Err("has no number of nodes".to_owned()),
     }
 }
 
@@ -133,7 +133,9 @@ fn check_bands(summary: &Summary, bands: Option<&CurveBands>) -> Result<(), Stri
     for (curve, widest) in bands.into_iter().flat_map(CurveBands::widest) {
         let stated = summary.band(&format!("{curve}_max")).unwrap_or(widest);
         if (widest - stated).abs() > BAND_ROUNDING * stated.abs() {
-            return Err(format!("the band of {curve} is at most {widest:e} wide; {SUMMARY} says {stated:e}"));
+            return Err(format!(
+                "the uncertainty of {curve} is at most {widest:e}, but {SUMMARY} states {stated:e}"
+            ));
         }
     }
     Ok(())

@@ -2,11 +2,10 @@
 
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
 use crate::format::significant;
-use crate::report::Report;
 use crate::report::conclusion::{HOLD, assumptions, conclusion, summaries};
-use crate::report::kinds;
-use crate::report::page::section::measured;
+use crate::report::page::section::{measured, validation};
 use crate::report::summary_column::SummaryColumn;
+use crate::report::{Report, check_failure, kinds, row_told};
 use crate::result::{Limit, Outcome, Summary};
 use crate::scene::Scene;
 use anstyle::{AnsiColor, Style};
@@ -50,17 +49,17 @@ pub(crate) fn findings(comparison: &SceneComparison) -> String {
         line(&warning, shared);
     }
     for check in comparison.integrity.iter().filter(|c| c.verdict.failed()) {
-        line("reference", crate::report::ci::junit::integrity_failure(check));
+        line("reference", check_failure(check));
     }
     for (record, effect) in comparison.measured.iter().flat_map(measured::effects) {
         line(&format!("{warning}: {record}"), effect.to_owned());
     }
     for model in &comparison.models {
         for row in model.discrepancies.iter().filter(|d| d.is_told()) {
-            line(&model.model, crate::report::ci::junit::told(row));
+            line(&model.model, row_told(row));
         }
         for check in model.integrity.iter().filter(|c| c.verdict.failed()) {
-            line(&model.model, crate::report::ci::junit::integrity_failure(check));
+            line(&model.model, check_failure(check));
         }
     }
     let gated = comparison.gated_verdicts().count();
@@ -95,7 +94,7 @@ pub fn terminal(report: &Report, width: Width) -> String {
             text += &wrapped(&measured::sentence(measured));
         }
         text += &findings(comparison);
-        text += &crate::report::page::section::validation::validation_text(comparison);
+        text += &validation::validation_text(comparison);
         text.push('\n');
     }
     text

@@ -80,7 +80,7 @@ fn curves_and_references_have_the_places_of_their_numbers() {
     assert!(svg.contains("reference (uncertainty 95 %)") && svg.contains("outer.radius, inner.radius in mm"));
     // between 10 and 14 mm the contact comes to last half the plate's first period
     let said: Vec<f64> =
-        attributes(&svg, "line", &["said"], "x1").iter().map(|x| x.parse().unwrap()).collect();
+        attributes(&svg, "line", &["fig-note"], "x1").iter().map(|x| x.parse().unwrap()).collect();
     let [end, first] = ["inner_contact_end", "first_frequency"].map(|name| column(&document, "B", name));
     let ratio: Vec<f64> = end.iter().zip(&first).map(|(end, first)| 2.0 * end * first).collect();
     assert!(ratio[1] < 1.0 && ratio[2] > 1.0, "{ratio:?}");

@@ -369,11 +369,11 @@ fn github_gets_annotations_at_the_tolerances_and_a_summary() {
     let said = String::from_utf8(output.stderr).unwrap();
     // no reference decides a tolerance of 1e-9
     let undecided = format!(
-        ",line={},title={SCENE}%2C model C%2C efficiency::efficiency: reduced 0.38",
+        ",line={},title={SCENE}%2C model C%2C efficiency::efficiency: model 0.38",
         line("efficiency           = { absolute = 1e-9")
     );
     let failed = format!(
-        "::error file=scene.toml,line={},title={SCENE}%2C model B%2C outer force%2C peak::outer_force_peak: reduced",
+        "::error file=scene.toml,line={},title={SCENE}%2C model B%2C outer force%2C peak::outer_force_peak: model",
         line("outer_force_peak     = { relative = 0.01, bias = 0.5 }")
     );
     let has = |said: &str, command: &str| said.lines().any(|line| line.starts_with(command));
@@ -391,7 +391,7 @@ fn github_gets_annotations_at_the_tolerances_and_a_summary() {
     assert!(summary.starts_with("what was there\n## impactcheck: fail"), "{summary}");
     let (failed, undecided) = summary.split_once("### What is undecided").unwrap();
     assert!(
-        failed.contains(&format!("### What failed\n\n- {SCENE}, model B: outer_force_peak: reduced")),
+        failed.contains(&format!("### What failed\n\n- {SCENE}, model B: outer_force_peak: model")),
         "{summary}"
     );
     assert!(undecided.contains(&format!("- {SCENE}, model C: efficiency: reduced")), "{summary}");

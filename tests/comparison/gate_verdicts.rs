@@ -82,7 +82,7 @@ fn what_the_reference_cannot_tell_is_undecided_and_the_user_says_how_it_counts()
     assert!(status == 0 && said.contains("warning: scene `scaled-plate-r6.35` is undecided"), "{said}");
     let report = file.with_file_name("report");
     let read = |name: &str| std::fs::read_to_string(report.join(name)).unwrap();
-    assert!(read("junit.xml").contains("<skipped message=\"efficiency: reduced"));
+    assert!(read("junit.xml").contains("<skipped message=\"efficiency: model"));
     assert!(read("comparison.md").starts_with("# impactcheck: undecided"));
     assert!(read("comparison.md").contains(how));
     for page in ["index.html", "scaled-plate-r6.35.html"] {
@@ -92,7 +92,7 @@ fn what_the_reference_cannot_tell_is_undecided_and_the_user_says_how_it_counts()
 
     let (status, said) = status_and_said(&gate(&file, &["--undecided", "fail"]));
     assert!(status == 10 && said.contains("error: scene `scaled-plate-r6.35` is undecided"), "{said}");
-    assert!(read("junit.xml").contains("<failure message=\"efficiency: reduced"));
+    assert!(read("junit.xml").contains("<failure message=\"efficiency: model"));
     let (status, said) = status_and_said(&gate(&file, &["--undecided", "pass"]));
     assert!(status == 0 && !said.contains("undecided"), "{said}");
     assert_eq!(status_and_said(&gate(&file, &["--undecided", "maybe"])).0, 2);
@@ -148,7 +148,7 @@ fn a_tolerance_without_a_value_to_compare_with_is_undecided_and_fails_where_tole
     ] {
         let (_, (status, said)) = gate(rules);
         assert!(status == 10 && said.contains("error: ") && said.contains(told), "{rules:?}: {said}");
-        let failure = "<failure message=\"outer_force_peak: reduced";
+        let failure = "<failure message=\"outer_force_peak: model";
         assert!(junit(&file).contains(failure) && junit(&file).contains("has no value of it"), "{rules:?}");
     }
     assert_eq!(gate(&["--undecided", "pass"]).1.0, 0);

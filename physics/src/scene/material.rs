@@ -24,7 +24,7 @@ pub(crate) static MATERIAL: [Field; 9] = [
     optional(
         "yield_strength",
         positive(Dimension::PRESSURE),
-        "Yield strength in uniaxial tension; without `hardening` contacts beyond it are only warned of; absent = not checked",
+        "Yield strength in uniaxial tension; without `hardening` a contact pressure above it only gives a warning; absent = not checked",
     ),
     optional(
         "hardening",
@@ -44,7 +44,7 @@ pub(crate) static MATERIAL: [Field; 9] = [
     optional(
         "loss_factor",
         pure(SHARE),
-        "Viscoelastic: loss over storage modulus, held over two decades on either side of `modulus_frequency`",
+        "Viscoelastic: loss over storage modulus, constant over two decades on either side of `modulus_frequency`",
     ),
     optional(
         "modulus_frequency",

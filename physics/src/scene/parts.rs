@@ -23,7 +23,7 @@ pub struct Plate {
     pub radius: f64,
     /// Thickness t in m.
     pub thickness: f64,
-    /// Support of the rim.
+    /// Support of the edge.
     pub edge: Edge,
     /// Material of the plate.
     pub material: Material,

@@ -259,10 +259,10 @@ mod tests {
             ("outer.mass", "no numeric field `outer.mass`"),
             ("fluid.viscosity", "no numeric field"),
             ("plate.edge", "no numeric field"),
-            ("friction", "it is the reference's alone"),
+            ("friction", "only the reference uses it"),
             ("materials.steel.hardening", "knows no hardening"),
             ("materials.steel.yield_strength", "without `hardening`"),
-            ("reference.elements_per_contact_radius", "it is the reference's alone"),
+            ("reference.elements_per_contact_radius", "only the reference uses it"),
         ] {
             let said = template.field(path).expect_err("refused").to_string();
             assert!(said.contains(part), "{said}");

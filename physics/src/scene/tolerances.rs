@@ -15,7 +15,7 @@ pub(super) const TERMS: [(&str, &str); 4] = [
     ("relative", "bound relative to the reference's value"),
     ("absolute", "bound in the quantity's unit"),
     ("relative_to_peak", "bound relative to the peak of the quantity's curve in the reference"),
-    ("bias", "known discrepancy, in the terms of the bound"),
+    ("bias", "declared bias, in the terms of the bound"),
 ];
 
 /// Share of launches that end in the other seat, of model and reference, where there is a flight.

@@ -6,7 +6,7 @@ use crate::comparison::{
     Verdict,
 };
 use crate::format::{model_name, percent, significant, words};
-use crate::report::{Report, SceneReport};
+use crate::report::{Report, SceneReport, check_failure, row_told};
 use std::path::Path;
 
 /// GitHub shows this many errors of a step, and as many warnings.
@@ -105,7 +105,7 @@ fn findings(comparison: &SceneComparison, rules: GateRules) -> Vec<GateFinding<'
     let broken = |of: &str, checks: &'_ [Check]| -> Vec<GateFinding<'_>> {
         let failed = checks.iter().filter(|c| c.verdict.failed());
         let finding = |check: &Check| {
-            let message = crate::report::check_failure(check);
+            let message = check_failure(check);
             GateFinding { verdict: check.verdict, of: of.to_owned(), message, model: None, row: None }
         };
         failed.map(finding).collect()
@@ -128,7 +128,7 @@ fn findings(comparison: &SceneComparison, rules: GateRules) -> Vec<GateFinding<'
             found.push(GateFinding {
                 verdict: row.verdict,
                 of: format!("{name}, {}", words(&row.quantity)),
-                message: crate::report::row_told(row),
+                message: row_told(row),
                 model: Some(&model.model),
                 row: Some(row),
             });

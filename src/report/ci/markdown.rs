@@ -5,9 +5,10 @@ use crate::error::Result;
 use crate::format::{model_name, percent, prefixed, significant, with_unit, words};
 use crate::report::export::Export;
 use crate::report::overview::{ModelOverview, Overview};
+use crate::report::page::section;
 use crate::report::page::validated_map::{self, ValidatedMap};
 use crate::report::standing::{self, Folder, Standing};
-use crate::report::{Report, SceneReport, kinds};
+use crate::report::{Report, SceneReport, check_failure, kinds};
 use std::cmp::Reverse;
 
 /// Most characters of the document: comments on GitHub hold 65 536, and what posts it may add a link.
@@ -146,12 +147,10 @@ fn section(scene: &SceneReport) -> String {
         text += &format!("\nWarning, reference: {}\n", escape(warning));
     }
     text += &failures("the reference", &comparison.integrity);
-    text += &crate::report::page::section::budget::budget_markdown(&comparison.budget);
-    text += &crate::report::page::section::validation::validation_markdown(comparison);
-    text += &crate::report::page::section::measured::measured_markdown(scene);
-    text += &crate::report::page::section::reference_check::reference_check_markdown(
-        comparison.reference_check.as_ref(),
-    );
+    text += &section::budget::budget_markdown(&comparison.budget);
+    text += &section::validation::validation_markdown(comparison);
+    text += &section::measured::measured_markdown(scene);
+    text += &section::reference_check::reference_check_markdown(comparison.reference_check.as_ref());
     for model in &comparison.models {
         text += &model_section(model);
     }
@@ -223,7 +222,7 @@ fn failures(of: &str, checks: &[Check]) -> String {
     }
     let mut text = format!("\nThe result of {of} contradicts itself or its scene:\n\n");
     for check in failed {
-        text += &format!("- {}\n", crate::report::ci::junit::integrity_failure(check));
+        text += &format!("- {}\n", check_failure(check));
     }
     text
 }

@@ -73,7 +73,7 @@ pub(crate) fn scale(axis: &SymmetricLog, id: &str) -> Markup {
             } } }
             // next to zero there is no room
             @for (k, tick) in axis.ticks().iter().enumerate().filter(|(_, t)| **t == 0.0 || t.abs() > 5.0 * axis.linear) {
-                text.alternate[k.abs_diff(zero) % 2 == 1] x=(at(axis, *tick)) y="15" text-anchor="middle" { (label(*tick)) }
+                text class=[(k.abs_diff(zero) % 2 == 1).then_some("alternate")] x=(at(axis, *tick)) y="15" text-anchor="middle" { (label(*tick)) }
             }
         }
     }

@@ -20,7 +20,7 @@ pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
     let body = html! {
         h1 { (title) }
         p.soft { (scene.description) }
-        p.note { "A reduced model alone: nothing here is compared with a reference." }
+        p.note { "Reduced model without a reference." }
         @if !summary.warnings.is_empty() { ul { @for warning in &summary.warnings { li { (warning) } } } }
         (scrolled("Results", &quantities(summary)))
         h2 { "Curves" }

@@ -7,7 +7,7 @@ use crate::report::export::Export;
 use crate::report::page::facts::facts;
 use crate::report::page::html::{assumptions_badge, badge, model_badge, page};
 use crate::report::page::section::discrepancy::{checks, contradictions, model_section};
-use crate::report::page::section::{Section, contents, sections};
+use crate::report::page::section::{self, Section, contents, sections};
 use crate::report::page::validated_map::ValidatedMap;
 use crate::report::page::{discrepancy_picture, first_screen, interactive};
 use crate::report::{SceneReport, Theme, figure, kinds};
@@ -50,11 +50,7 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
     let mut all = vec![
         Section::new("discrepancies", "Differences", discrepancy_picture::discrepancy_picture(comparison)),
         Section::new("over-time", "Curves", curves(report)),
-        Section::new(
-            "validation",
-            "Uncertain inputs",
-            crate::report::page::section::validation::validation_html(comparison),
-        ),
+        Section::new("validation", "Uncertain inputs", section::validation::validation_html(comparison)),
     ];
     all.extend(comparison.models.iter().map(|model| {
         let title = format!("Model {}", model_name(&model.model, model.summary.modes));
@@ -63,25 +59,16 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
             .marked(model_badge(model))
     }));
     all.extend(shown.sections(report));
-    let accepted = crate::report::page::section::acceptance::acceptances_html(
-        attachments,
-        &comparison.changed_tolerances,
-    );
+    let accepted = section::acceptance::acceptances_html(attachments, &comparison.changed_tolerances);
     all.extend([
         Section::new(
             "reference-check",
             "Independent solver",
-            crate::report::page::section::reference_check::reference_check_html(
-                comparison.reference_check.as_ref(),
-            ),
+            section::reference_check::reference_check_html(comparison.reference_check.as_ref()),
         ),
         Section::new("validated", "Compared scenes", validated(report)),
-        Section::new(
-            "validity",
-            "Assumptions",
-            crate::report::page::section::limits::limits_html(comparison),
-        ),
-        Section::new("trends", "Trends", crate::report::page::section::trend::trends_html(attachments)),
+        Section::new("validity", "Assumptions", section::limits::limits_html(comparison)),
+        Section::new("trends", "Trends", section::trend::trends_html(attachments)),
         Section::new("accepted", "Accepted changes", accepted),
         Section::new("mesh", "Mesh and solver", mesh(report, &shown.mesh(report))),
         Section::new("provenance", "Provenance", provenance(report)),

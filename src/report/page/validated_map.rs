@@ -52,7 +52,7 @@ impl<'a> ValidatedMap<'a> {
                 "Patch: the larger contact patch's radius at the force peak; contact: end of the outer contact; period: the plate's first; "
                 "mass ratio: inner body over outer body."
             }
-            details { summary { "The " (self.scenes().len()) " scenes in numbers" } (scrolled("Validated scenes", &self.table())) }
+            details { summary { "The " (self.scenes().len()) " scenes in numbers" } (scrolled("Compared scenes", &self.table())) }
         }
     }
 

@@ -71,7 +71,7 @@ pub(super) fn warnings(setup: &PlateImpact, predictor: &Predictor, system: &Syst
     for (reach, patch) in reach.into_iter().zip(predictor.patch_radius) {
         if reach < REACH * patch {
             warnings.push(format!(
-                "model {}: beyond a radius of {:.3} mm a contact patch of about {:.3} mm is continued as a flat punch: compare with the reference, or take fewer modes",
+                "model {}: above a contact radius of {:.3} mm the contact (about {:.3} mm) is treated as a flat punch: compare with the reference, or take fewer modes",
                 Model::C,
                 1e3 * reach,
                 1e3 * patch

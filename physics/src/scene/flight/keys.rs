@@ -20,7 +20,7 @@ static SPRING: [Field; 5] = [
     optional(
         "stiffness",
         not_negative(Dimension::STIFFNESS),
-        "By how much less it pushes per length that the sphere gives way; absent = 0",
+        "Decrease of the force per displacement of the sphere; absent = 0",
     ),
     one_way(
         None,
@@ -39,7 +39,7 @@ static SPRING: [Field; 5] = [
         optional(
             "anchor_distance",
             positive(Dimension::LENGTH),
-            "Its held end lies so far above the line between the seats, in their middle",
+            "Distance of its fixed end above the middle between the seats",
         ),
     ),
     optional(

@@ -3,10 +3,10 @@
 use crate::comparison::{BandVerdict, Check, Discrepancy, ModelComparison, Verdict};
 use crate::curves::CurveMetrics;
 use crate::format::{percent, prefixed, significant, with_unit, words};
+use crate::report::check_failure;
 use crate::report::page::html::{badge, named, number, scrolled};
 use crate::report::page::prose::prose;
-use crate::result::ContactPatch;
-use crate::result::ContactPressure;
+use crate::result::{ContactPatch, ContactPressure};
 use maud::{Markup, html};
 
 /// What there is to say of one model; its tables fold.
@@ -137,7 +137,7 @@ pub(crate) fn contradictions(source: &str, checks: &[Check]) -> Markup {
     html! {
         @if !failed.is_empty() {
             p { (badge(Verdict::Fail)) " The result of " (source) " contradicts itself or its scene:" }
-            ul { @for check in failed { li { (prose(&crate::report::ci::junit::integrity_failure(check))) } } }
+            ul { @for check in failed { li { (prose(&check_failure(check))) } } }
         }
     }
 }

@@ -94,7 +94,7 @@ fn pictures(scene: &Scene, summary: &FlightSummary) -> Markup {
         }
         figure {
             (PreEscaped(map_picture(&setup, &landscape, summary, &scatter)))
-            figcaption { "Where launches of other speeds and angles end, with the launch (ring) and its band. Below, the band: the range of launches of the share above." }
+            figcaption { "Outcome over speed and angle of the release (ring: this release). Below: releases within the range of the share above." }
         }
         @if let Some(chart) = shaken {
             figure {

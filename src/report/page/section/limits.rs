@@ -19,7 +19,7 @@ pub(crate) fn limits_html(comparison: &SceneComparison) -> Markup {
     }
     html! {
         @if !measures.is_empty() {
-            (scrolled("Range of validity", &html! { table.limits {
+            (scrolled("Assumptions", &html! { table.limits {
                 thead { tr {
                     th scope="col" { "measure" } th scope="col" { "holds up to" } th scope="col" { "reference" }
                     @for model in models() { th scope="col" { (model.model.as_deref().unwrap_or_default()) } }

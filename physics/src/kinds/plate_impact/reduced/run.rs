@@ -294,7 +294,7 @@ fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
         .filter(|(_, contact)| contact.contacts > 0 && near(contact))
         .map(|(body, contact)| {
             format!(
-                "the number of contacts of the {body} body, {}, is uncertain: the surfaces come within {:.0e} of the largest approach to touching or parting once more",
+                "the number of contacts of the {body} body, {}, is uncertain: the surfaces separate or approach by only {:.0e} of the largest approach",
                 contact.contacts, contact.least_turn
             )
         })

@@ -21,7 +21,7 @@ pub(super) fn keys() -> Vec<Field> {
         optional(
             "series",
             Kind::Table(&SERIES),
-            "The impact repeated, each time with the dents of those before",
+            "Repeated impacts, each with the plastic indentations of those before",
         ),
         optional("reduced", Kind::Table(&REDUCED), "Settings of the reduced model"),
         optional("reference", Kind::Table(&REFERENCE), "Settings of the finite-element reference"),
@@ -40,7 +40,7 @@ static PLATE: [Field; 5] = [
     required(
         "edge",
         Kind::Choice(&[choice("clamped"), choice("simply-supported"), choice("free")]),
-        "Support of the rim",
+        "Support of the edge",
     ),
     required("material", Kind::Material, "Material of the plate, a name under [materials]"),
     optional("damping_ratio", pure(Bound::NOT_NEGATIVE), "Modal damping ratio of every mode; 0 = undamped"),
@@ -158,7 +158,7 @@ static OUTER: [Field; 37] = [
         magnet(
             "stop_inductance",
             Dimension::INDUCTANCE,
-            "The same with the plunger at its stop, at the plate; 1/L falls evenly on the way",
+            "Inductance with the plunger at its stop (at the plate); 1/L falls linearly over the travel",
         ),
     ),
     pull(
@@ -175,7 +175,7 @@ static OUTER: [Field; 37] = [
     magnet("travel", Dimension::LENGTH, "Way of the plunger to its stop"),
     stack("area", Dimension::AREA, "Area of the stack's section"),
     stack("stroke", Dimension::LENGTH, "Growth of the free stack at `voltage`"),
-    stack("blocked_force", Dimension::FORCE, "Force of the stack that is held at its length, at `voltage`"),
+    stack("blocked_force", Dimension::FORCE, "Force of the stack at constant length, at `voltage`"),
     stack("voltage", Dimension::VOLTAGE, "Voltage that is switched on"),
     stack("capacitance", Dimension::CAPACITANCE, "Capacitance of the free stack"),
     inertia("density", stack("density", Dimension::DENSITY, "Mass density of the stack")),
@@ -201,11 +201,7 @@ static OUTER: [Field; 37] = [
     ),
     only(
         &["stack"],
-        optional(
-            "drive",
-            Kind::Table(&DRIVE),
-            "What supplies the stack; absent = a source that holds `voltage` whatever it takes",
-        ),
+        optional("drive", Kind::Table(&DRIVE), "Supply of the stack; absent = a constant-voltage source"),
     ),
     bender("tip_mass", Dimension::MASS, "Point mass at the tip of the beam"),
     beam(
@@ -234,7 +230,7 @@ static OUTER: [Field; 37] = [
         optional(
             "offset",
             Kind::Quantity(Dimension::LENGTH, Bound::ANY),
-            "Deflection of the bender's tip at which it meets the plate, negative = beyond its straight position; absent = 0",
+            "Deflection of the bender's tip at contact with the plate, negative = beyond its straight position; absent = 0",
         ),
     ),
     discharge(

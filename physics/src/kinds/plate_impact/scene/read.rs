@@ -146,12 +146,10 @@ fn pull(outer: &Node) -> Result<Inductance> {
     }
     let points = if forces.is_empty() { &inductances } else { &forces };
     if points.len() < 2 || points[0][0] != 0.0 || points[points.len() - 1][0] < travel {
-        return refuse(format!(
-            "does not reach over the way of the plunger, from 0 to `outer.travel`, {travel} m"
-        ));
+        return refuse(format!("does not cover the travel from 0 to `outer.travel`, {travel} m"));
     }
     if let Some(pair) = points.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-        return refuse(format!("has the way {} m after {} m, but it has to rise", pair[1][0], pair[0][0]));
+        return refuse(format!("has the way {} m after {} m, but it must increase", pair[1][0], pair[0][0]));
     }
     if !forces.is_empty() {
         return Ok(Inductance::of_forces(start, &forces));
@@ -202,7 +200,7 @@ fn stack(outer: &Node) -> Result<Stack> {
     if coupled >= stack.capacitance {
         return Err(refused(
             &format!(
-                "`outer.capacitance` is {} F, but `outer.blocked_force` times `outer.stroke` over the square of `outer.voltage` alone is {coupled:.4e} F, of which it has to be more",
+                "`outer.capacitance` is {} F, but it must be more than its coupled part, `outer.blocked_force` times `outer.stroke` over the square of `outer.voltage`, {coupled:.4e} F",
                 stack.capacitance
             ),
             "a stack that is held has less capacitance than a free one, by just that, and still some",

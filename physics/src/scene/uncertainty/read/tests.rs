@@ -101,7 +101,7 @@ fn what_is_no_distribution_is_told_with_its_place() {
         ),
         ("\n\"inner.gap\" = { normal = \"1 um\" }", ["no `inner.gap` about which", "state `inner.gap` too"]),
         ("\n\"reduced.modes\" = \"1 %\"", ["takes whole numbers", "leave it out"]),
-        ("\nfriction = \"1 %\"", ["it is the reference's alone", "leave it out"]),
+        ("\nfriction = \"1 %\"", ["only the reference uses it", "leave it out"]),
         ("", ["names no input", "\"plate.thickness\" = \"1 %\""]),
     ] {
         let (said, line) = refused(table);

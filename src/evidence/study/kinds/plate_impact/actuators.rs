@@ -54,8 +54,11 @@ pub const PANELS: [Panel; 2] = [
 ];
 
 const fn panel(column: &'static str, label: &'static str, factor: f64) -> Panel {
-    Panel::of(Axis::new("gap", "Plate beyond its nominal place in um", 1e6), Axis::new(column, label, factor))
-        .by(Axis::new("actuator", "", 1.0))
+    Panel::of(
+        Axis::new("gap", "Plate offset from its nominal position in µm", 1e6),
+        Axis::new(column, label, factor),
+    )
+    .by(Axis::new("actuator", "", 1.0))
 }
 
 /// An actuator with the plate at a place.
