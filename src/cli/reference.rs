@@ -2,7 +2,7 @@
 
 use super::progress::Bar;
 use super::{Context, JsonArgument};
-use crate::comparison::{self, Verdict};
+use crate::comparison::contradictions;
 use crate::error::{Error, ExitStatus, Result};
 use crate::reference::{Lookup, Resolution, Store, Stored, TargetError, Wish};
 use crate::scene::{Geometry, Scene};
@@ -179,9 +179,7 @@ fn resolution(arguments: &Arguments) -> Result<Resolution> {
 /// # Errors
 /// [`Error::Reference`] that names what is not.
 pub(super) fn require_sound(scene: &Scene, stored: &Stored) -> Result<()> {
-    let checks = comparison::integrity(scene, &stored.outcome);
-    let broken = checks.iter().filter(|check| check.verdict == Verdict::Fail);
-    let broken: Vec<String> = broken.map(ToString::to_string).collect();
+    let broken = contradictions(scene, &stored.outcome);
     if broken.is_empty() {
         return Ok(());
     }

@@ -1,4 +1,4 @@
-//! CalculiX's solutions, which a comparison holds against the references.
+//! CalculiX's solutions, which a comparison checks the references with.
 
 use super::Context;
 use super::compare_arguments::Arguments;

@@ -1,6 +1,6 @@
 //! Results of other programs as references: only those that contradict neither themselves nor their scene.
 
-use super::{Verdict, integrity};
+use super::contradictions;
 use crate::error::{Error, Result};
 use crate::reference::{Store, Stored, read_import};
 use crate::scene::Scene;
@@ -13,9 +13,7 @@ use std::path::Path;
 /// fault, or what the result contradicts: a wrong unit, sign or column.
 pub fn import(scene: &Scene, file: &Path, map: Option<&Path>, store: &Store) -> Result<Stored> {
     let imported = read_import(scene, file, map)?;
-    let checks = integrity::check(scene, &imported.outcome);
-    let broken: Vec<String> =
-        checks.iter().filter(|check| check.verdict == Verdict::Fail).map(ToString::to_string).collect();
+    let broken = contradictions(scene, &imported.outcome);
     if broken.is_empty() {
         return imported.install(scene, store);
     }

@@ -71,6 +71,12 @@ pub fn check(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
     checks
 }
 
+/// What a result of `scene` contradicts, itself or the scene: the checks that fail, in words.
+pub fn contradictions(scene: &Scene, outcome: &Outcome) -> Vec<String> {
+    let checks = check(scene, outcome).into_iter();
+    checks.filter(|check| check.verdict.failed()).map(|check| check.to_string()).collect()
+}
+
 /// Both results are of the same scene.
 pub(super) fn same_impact(reference: &Summary, reduced: &Summary) -> Check {
     let differs = reference.scene != reduced.scene || reference.scene_hash != reduced.scene_hash;

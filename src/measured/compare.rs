@@ -180,7 +180,8 @@ impl Efficiency {
         Some(summary.value("efficiency")? - self.series.as_ref()?.mean)
     }
 
-    /// What the difference of a result shows, whose inputs let it scatter as `scatter` says, and the area between both distributions.
+    /// What the difference of a result shows, given its propagated input uncertainty `scatter`, and the area between both
+    /// distributions.
     fn assessed(&self, summary: &Summary, scatter: Option<&Scatter>) -> (Option<Assessment>, Option<Area>) {
         let scatter = scatter.and_then(|scatter| scatter.quantities.get("efficiency"));
         let Some((error, scatter)) = self.difference(summary).zip(scatter) else { return (None, None) };

@@ -192,7 +192,7 @@ mod tests {
             document.descendants().filter_map(|n| n.attribute("cx")?.parse().ok()).collect();
         places.sort_by(f64::total_cmp);
         places.dedup();
-        let &[.., first, beyond, last] = &places[..] else { panic!("{places:?}") };
+        let &[first, .., beyond, last] = &places[..] else { panic!("{places:?}") };
         assert!(
             ((beyond - first) / (last - beyond) - 2.0).abs() < 1e-3,
             "the marks of 1, 3 and 4: {places:?}"

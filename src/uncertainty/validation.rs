@@ -84,7 +84,8 @@ impl Shown {
     }
 }
 
-/// The scatter of the result called `name`: of its own model if that is known; the reference and other programs scatter as model C.
+/// Propagated input uncertainty of the result called `name`: that of its own model if there is one, else of model C, which stands for
+/// the reference and for other programs.
 pub fn scatter_of<'s>(scatters: &'s BTreeMap<String, Scatter>, name: &str) -> Option<&'s Scatter> {
     scatters.get(name).or_else(|| scatters.get(&Model::C.to_string()))
 }
