@@ -5,6 +5,8 @@ use super::verdict::Verdict;
 use crate::format::{prefixed, with_unit};
 use crate::result::Summary;
 
+/// Rounding error of a difference, relative.
+const ROUNDING: f64 = 1e-9;
 /// Smallest relative band that a reference can be asked for.
 const SMALLEST_TARGET: f64 = 1e-4;
 
@@ -29,7 +31,8 @@ fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
     let (tolerance, band) = (row.tolerance?, row.band()?);
     let needed = (tolerance - row.checked()).abs();
     let to = prefixed(&row.unit, row.reference.unwrap_or(band));
-    let [needed_value, now] = [rounded_down(needed), band].map(|value| with_unit(value, to, 2));
+    let [needed_value, now] =
+        [rounded_down(needed * (1.0 + ROUNDING)), band].map(|value| with_unit(value, to, 2));
     let uncertainty = format!("an uncertainty of at most {needed_value} is needed (now {now})");
     // what a target is about is the reference's own band
     let reached = reached.filter(|_| row.difference_uncertainty.is_none());

@@ -190,7 +190,7 @@ fn syntax(text: &str, error: &serde_json::Error) -> String {
     let at: String = line.chars().skip(error.column().saturating_sub(1)).take(SHOWN).collect();
     let help = match ["NaN", "aN", "Inf", "-Inf", "nan", "inf"].iter().any(|word| at.starts_with(word)) {
         true => "; JSON has no NaN and no infinity: write null for what is not determined",
-        false => "; the document has to be all of the standard output, messages belong on standard error",
+        false => "; the document must be all of the standard output, messages belong on standard error",
     };
     format!("it is no JSON document: {error}, at `{at}`{help}")
 }

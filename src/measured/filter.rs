@@ -24,7 +24,7 @@ pub fn low_pass(values: &[f64], step: f64, bandwidth: f64) -> Result<Vec<f64>> {
     let refused = || {
         let limit = 0.5 / step;
         Error::Usage(format!(
-            "a bandwidth of {bandwidth} Hz needs more samples: with steps of {step} s it has to be well below {limit} Hz"
+            "a bandwidth of {bandwidth} Hz needs more samples: with steps of {step} s it must be well below {limit} Hz"
         ))
     };
     let design =

@@ -104,7 +104,7 @@ mod tests {
             rows().enumerate().map(move |(i, row)| if i == k { text.clone() } else { row })
         };
         for (file, part) in [
-            (text("time [us],outer_speed,inner_velocity", rows()), "`outer_speed` is no column"),
+            (text("time [us],outer_speed,inner_velocity", rows()), "`outer_speed` is not a known column"),
             (
                 text("time [um],outer_velocity,inner_velocity", rows()),
                 "`um` is the unit of something else; a time in s is needed",

@@ -82,8 +82,8 @@ fn shown(output: &std::process::Output, folder: &Path) -> Vec<String> {
 
 /// `line` without what differs from run to run: run times, rounding errors, times of day.
 fn repeatable(line: &str) -> String {
-    let clock =
-        Regex::new(r"\bin [0-9.]+ (s|ms|µs)\b|\d\d:\d\d(:\d\d)?|\d{4}-\d\d-\d\d").expect("expression");
+    let clock = Regex::new(r"\bin [0-9.]+ (s|ms|µs)\b|[0-9.]+ per second|\d\d:\d\d(:\d\d)?|\d{4}-\d\d-\d\d")
+        .expect("expression");
     if line.contains("residual") {
         return line.split_whitespace().next().unwrap_or_default().to_owned();
     }

@@ -254,7 +254,7 @@ fn what_is_not_covered_is_refused_and_what_is_open_is_told() {
     let fluid = "fluid = { viscosity = 1e-3, density = 1e3, minimum_gap = 1e-6 }";
     for (materials, plate, more, words) in [
         (plastic.to_owned(), "b", fluid, "fluid"),
-        (format!("{plastic}\n{relaxing}"), "c", "", "joins a material"),
+        (format!("{plastic}\n{relaxing}"), "c", "", "joins a plastic"),
     ] {
         let error = scene_of(&materials, "b", plate, more).unwrap_err();
         assert_eq!(error.exit_status(), impactcheck::ExitStatus::InvalidScene);

@@ -142,7 +142,7 @@ fn a_contact_at_single_nodes_is_warned_of() {
         let scene = Scene::parse("seat.toml", &text.replace("1 m/s", speed)).expect("scene");
         let model = SeatModel::new(&scene, Model::C, Some(8), &mesh(), &Cache::off()).expect("model");
         let warnings = model.run(1e-2).expect("run").warnings;
-        ["nodes on the contact ring only", "touches one node only"]
+        ["nodes of the contact ring only", "in contact with one node only"]
             .map(|what| warnings.iter().any(|w| w.contains(what)))
     };
     assert_eq!(alone("10 mm/s"), [true, true]);

@@ -122,8 +122,8 @@ fn colliding_features_are_named() {
     collides(&[("island_length", "\"15 mm\"")], &["island", "rim of the membrane", "8 mm"]);
     collides(&[("tip_positions", "[\"-8 mm\", \"2 mm\"]")], &["tip", "beyond the membrane", "-8 mm"]);
     collides(&[("tip_positions", "[0.001, 0.0012]")], &["two tips", "same place", "1.2 mm", "0.3 mm"]);
-    collides(&[("tip_radius", "\"1 um\"")], &["too sharp", "1 m/s", "0.001 mm", "0.0851"]);
-    collides(&[("speed", "\"300 m/s\"")], &["too sharp", "300 m/s", "3 mm"]);
+    collides(&[("tip_radius", "\"1 um\"")], &["too narrow", "1 m/s", "0.001 mm", "0.0851"]);
+    collides(&[("speed", "\"300 m/s\"")], &["too narrow", "300 m/s", "3 mm"]);
     // The membrane as thick as the island swallows its notch, too.
     let found = refused(&with(&[("membrane_thickness", "\"2.95 mm\"")]));
     assert!(

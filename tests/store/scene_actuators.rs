@@ -163,7 +163,7 @@ fn a_stack_that_cannot_be_is_told() {
     for (from, to, parts) in [
         ("capacitance = 1.4e-6", "capacitance = 0.6e-6", ["outer.capacitance", "6.5733e-7 F"]),
         ("density = 8000", "density = 8000\ngap = 36e-6", ["outer.gap", "3.4800e-5 m"]),
-        ("density = 8000", "density = 8000\ngap = 36e-6", ["outer.gap", "never touches"]),
+        ("density = 8000", "density = 8000\ngap = 36e-6", ["outer.gap", "never reaches"]),
     ] {
         let error = Scene::parse("scene.toml", &stack(from, to)).expect_err("no stack");
         assert_eq!(error.exit_status(), ExitStatus::InvalidScene);

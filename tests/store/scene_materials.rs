@@ -33,7 +33,7 @@ fn materials_that_contradict_themselves_are_refused() {
         ("modulus_frequency = 1e4", "loss_factor"),
         (
             "loss_factor = 0.02\nmodulus_frequency = 1e4\nrelaxation = [{ ratio = 0.1, time = 1e-5 }]",
-            "same thing",
+            "specify the same",
         ),
         (
             "yield_strength = 6e8\nhardening = 0\nrelaxation = [{ ratio = 0.1, time = 1e-5 }]",

@@ -260,7 +260,7 @@ mod tests {
             ("fluid.viscosity", "no numeric field"),
             ("plate.edge", "no numeric field"),
             ("friction", "only the reference uses it"),
-            ("materials.steel.hardening", "knows no hardening"),
+            ("materials.steel.hardening", "omits hardening"),
             ("materials.steel.yield_strength", "without `hardening`"),
             ("reference.elements_per_contact_radius", "only the reference uses it"),
         ] {

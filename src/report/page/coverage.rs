@@ -178,7 +178,7 @@ mod tests {
         let coverage = Coverage { schema_version: 1, features: vec![held, alone] };
         assert_eq!(
             told(&coverage),
-            "2 features that a scene can have; 1 of them are held against something independent; not so: drag."
+            "2 features that a scene can have; 1 of them are compared with something independent; not: drag."
         );
         let page = of(&coverage, &[]);
         assert_eq!(page.matches("<th class=\"left\" scope=\"row\">").count(), 2, "{page}");

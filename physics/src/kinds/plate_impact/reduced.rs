@@ -203,7 +203,7 @@ mod tests {
             let scene = Scene::parse("film.toml", text).unwrap();
             let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-4).unwrap();
             assert_eq!(
-                summary.warnings.iter().any(|w| w.contains("squeeze film takes")),
+                summary.warnings.iter().any(|w| w.contains("squeeze film dissipates")),
                 told,
                 "{summary:?}"
             );

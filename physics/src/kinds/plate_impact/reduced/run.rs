@@ -333,7 +333,7 @@ mod tests {
         };
         assert_eq!(summary(sound.energy_residual).unwrap().warnings, Vec::<String>::new());
         let off = summary(1e-5).unwrap();
-        assert!(off.warnings.iter().any(|w| w.contains("ledger of energy")), "{:?}", off.warnings);
+        assert!(off.warnings.iter().any(|w| w.contains("balance of energy")), "{:?}", off.warnings);
         assert!(matches!(summary(0.02), Err(Error::Solver(_))));
     }
 }

@@ -240,7 +240,7 @@ fn within(share: f64, offset: f64) -> Result<f64> {
     }
     Err(refused(
         &format!(
-            "`outer.offset` is {offset} m, but its magnitude has to be at most {FARTHEST} of the tip's deflection before the release, {:.4e} m",
+            "`outer.offset` is {offset} m, but its magnitude must be at most {FARTHEST} of the tip's deflection before the release, {:.4e} m",
             FARTHEST * (offset / share).abs()
         ),
         "bend the bender more, or bring the plate nearer to its straight position",

@@ -107,7 +107,7 @@ impl Bodies for PlateImpact {
     /// Over the rocker the inner body flies between two walls.
     fn flyer(&self, flight: &Flight) -> Result<Flyer, String> {
         let Shape::Sphere { radius } = self.inner.shape else {
-            return Err("the body that flies has to be a sphere: `inner.kind` is not".into());
+            return Err("the body that flies must be a sphere: `inner.kind` is not".into());
         };
         let chamber = Chamber::over_rocker(flight.travel.unwrap_or_default(), flight.chamber_height, radius);
         let mass = self.inner.shape.mass(&self.inner.material);

@@ -249,7 +249,7 @@ fn tips(setup: &SealSeat) -> Vec<Collision> {
         fields: vec!["actuator.tip_radius", "actuator.speed"],
         holds: actuator.tip_radius >= least,
         message: format!(
-            "the tips are too narrow: at `actuator.speed` {} m/s a tip goes deeper into the seat's material than its radius, `actuator.tip_radius` {}, which has to be at least {}",
+            "the tips are too narrow: at `actuator.speed` {} m/s a tip goes deeper into the seat's material than its radius, `actuator.tip_radius` {}, which must be at least {}",
             actuator.speed,
             mm(actuator.tip_radius),
             mm(least)
@@ -273,7 +273,7 @@ fn tips(setup: &SealSeat) -> Vec<Collision> {
                 fields: vec!["actuator.tip_positions", "actuator.tip_radius"],
                 holds: (x - other).abs() >= least,
                 message: format!(
-                    "two tips of the actuator strike the same place: `actuator.tip_positions` has {} and {}, but their distance has to be at least {} (a tenth of `actuator.tip_radius`)",
+                    "two tips of the actuator strike the same place: `actuator.tip_positions` has {} and {}, but their distance must be at least {} (a tenth of `actuator.tip_radius`)",
                     mm(*other),
                     mm(*x),
                     mm(least)

@@ -83,7 +83,7 @@ fn what_is_no_distribution_is_told_with_its_place() {
         ),
         ("\nplate.thicknes = \"1 %\"", ["`uncertainty.plate.thicknes`", "did you mean `plate.thickness`?"]),
         ("\n\"plate.thickness\" = \"20 um\"", ["is \"20 um\"", "{ normal = \"20 um\" }"]),
-        ("\n\"plate.thickness\" = 0.01", ["is 0.01", "has to be a percentage or a distribution"]),
+        ("\n\"plate.thickness\" = 0.01", ["is 0.01", "must be a percentage or a distribution"]),
         ("\n\"plate.thickness\" = { normal = \"20 g\" }", ["`g` is not the unit of a length", "m is needed"]),
         ("\n\"plate.thickness\" = { normal = \"-1 %\" }", ["-1 %", "greater than 0"]),
         ("\n\"plate.thickness\" = \"0 %\"", ["0 %", "greater than 0"]),
