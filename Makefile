@@ -51,11 +51,13 @@ wheel: setup
 	$(WHEEL)/bin/python -m pip install --quiet --force-reinstall --no-deps target/wheels/*.whl
 
 python: setup wheel
-	$(VENV)/bin/ruff check fem_reference examples python tests/freeze
-	$(VENV)/bin/ruff format --check fem_reference examples python tests/freeze
+	$(VENV)/bin/ruff check fem_reference examples python tests/freeze guide/check guide/generate
+	$(VENV)/bin/ruff format --check fem_reference examples python tests/freeze guide/check guide/generate
+	guide/check
 	$(TOOL) -m mypy
 	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference
 	cargo build --release
+	guide/generate target/release/impactcheck --check
 	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck IMPACTCHECK_PYTHON=$(or $(IMPACTCHECK_PYTHON),$(CURDIR)/$(TOOL)) \
 	    $(WHEEL)/bin/python -m pytest -q python
 	$(WHEEL)/bin/python -m mypy.stubtest impactcheck._core
