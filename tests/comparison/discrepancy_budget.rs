@@ -275,7 +275,7 @@ fn page_markdown_and_json_show_the_budget_and_bars_have_its_lengths() {
             assert!(page.contains(&cell), "{cell}");
         }
     }
-    assert!(text.contains("### Discrepancy budget") && text.contains("| Kirchhoff kinematics |"));
+    assert!(text.contains("### Error budget") && text.contains("| Kirchhoff kinematics |"));
 
     let start = page.find("<figure class=\"budget\">").unwrap();
     let start = start + page[start..].find("<svg").unwrap();

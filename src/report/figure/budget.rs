@@ -82,7 +82,7 @@ pub(crate) fn budget_figure(rows: &[QuantityBudget], open: &BTreeMap<&str, f64>)
         let left = LEFT + panel as f64 * (width + GAP);
         left + MARGIN + (width - 2.0 * MARGIN) * (value - low) / span
     };
-    let title = "Discrepancy budget: what each simplification adds to model B less reference";
+    let title = "Error budget: what each simplification adds to model B less reference";
     Svg::new(title, [WIDTH, bottom + 6.0], Theme::Inline).around(&html! {
         @for (k, name) in names.iter().enumerate() {
             @let y = TOP + ROW * k as f64;

@@ -86,7 +86,7 @@ const HEADINGS: [(&str, bool); 8] = [
     ("model", true),
     ("verdict", true),
     ("largest discrepancy of the summary", false),
-    ("95 % band", false),
+    ("uncertainty (95 %)", false),
     ("tolerance used", false),
     ("efficiency", false),
     ("drift", false),

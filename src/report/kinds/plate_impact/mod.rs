@@ -101,7 +101,7 @@ impl Presentation for Plate {
             Section::new("impacts", "Impacts in series", section::impacts::impacts_html(report)),
             Section::new("landing", "Landing", section::flight::flights_html(report)),
             Section::new("dents", "Dents", dents),
-            Section::new("budget", "Discrepancy budget", budget),
+            Section::new("budget", "Error budget", budget),
             Section::new("measurement", "Measurement", measured),
         ]
     }

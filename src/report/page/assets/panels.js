@@ -59,11 +59,11 @@
       const values = data.sources.map(({ id }) => ({ values: curve.values[id], digits: panel.decimals, role: { source: id } }));
       row(curve, curve.body, [...values, { values: curve.band, sign: "± ", digits: panel.decimals }]);
       const off = models.map((model) => ({ values: difference(curve, model), digits: panel.decimals + 1, role: { residual: model.id } }));
-      row(curve, "less FE", [{}, ...off, {}]);
+      row(curve, "model − FE", [{}, ...off, {}]);
       body.lastChild.className = "off-by";
     }
     const head = make("tr", {}, make("th", { scope: "col", textContent: panel.label }));
-    for (const name of [...data.sources.map((source) => source.short), "95 % band"]) head.append(make("th", { scope: "col", textContent: name }));
+    for (const name of [...data.sources.map((source) => source.short), "uncertainty (95 %)"]) head.append(make("th", { scope: "col", textContent: name }));
     const table = make("table", { className: "readout" }, make("thead", {}, head), body);
     const show = (index) => {
       for (const [cell, values, sign, digits] of cells) {
@@ -208,7 +208,7 @@
       scales: { y: { distr: 4, asinh: linear, range: [-limit, limit] } },
       axes: [
         axis(last ? { label: "Time in µs", size: 26 } : { size: 6, values: blank }),
-        axis({ label: "less FE", size, splits: () => marks, filter: (_, splits) => splits, values: (_, splits) => splits.map((v) => minus(String(+v.toPrecision(3)))) }),
+        axis({ label: "model − FE", size, splits: () => marks, filter: (_, splits) => splits, values: (_, splits) => splits.map((v) => minus(String(+v.toPrecision(3)))) }),
       ],
       hooks: {},
     }));
@@ -245,7 +245,7 @@
     return svg;
   };
   for (const source of data.sources) controls.append(toggle(source.id, source.name, sample(source.dash.join(" ") || "none", source.class)));
-  if (data.panels.some((panel) => panel.curves.some((curve) => curve.band))) controls.append(toggle("band", "95 % band", sample("none", "band-sample")));
+  if (data.panels.some((panel) => panel.curves.some((curve) => curve.band))) controls.append(toggle("band", "uncertainty (95 %)", sample("none", "band-sample")));
   for (const body of new Set(data.panels.flatMap((panel) => panel.curves.map((curve) => curve.body)))) controls.append(toggle(body, body));
 
   const button = (name, action) => {

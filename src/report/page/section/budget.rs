@@ -22,11 +22,11 @@ pub(crate) fn budget_html(comparison: &SceneComparison) -> Markup {
     html! {
         p.soft { (EXPLANATION) }
         figure.budget {
-            (detailed("Discrepancy budget, drawn", &html! { (budget_figure(rows, &open)) }))
+            (detailed("Error budget, drawn", &html! { (budget_figure(rows, &open)) }))
             figcaption { "Relative to the reference, one scale for all. Thin line: uncertainty of a part. "
                 "Grey: bound of the remainder" @if !open.is_empty() { ", and 2 u_val with uncertain inputs" } "." }
         }
-        (scrolled("Discrepancy budget", &html! { table.budget {
+        (scrolled("Error budget", &html! { table.budget {
             thead { tr {
                 th scope="col" { "cause" }
                 @for row in rows { th scope="col" { (words(&row.quantity)) } }
@@ -91,7 +91,7 @@ pub(crate) fn budget_markdown(rows: &[QuantityBudget]) -> String {
         let cells: String = rows.iter().map(|row| format!(" {} |", cell(row))).collect();
         format!("| {name} |{cells}\n")
     };
-    let mut text = format!("\n### Discrepancy budget\n\n{EXPLANATION}\n\n");
+    let mut text = format!("\n### Error budget\n\n{EXPLANATION}\n\n");
     text += &line("cause", &|row| words(&row.quantity));
     text += &format!("|---|{}\n", "--:|".repeat(rows.len()));
     text += &line("reference", &|row| with_unit(row.reference, scale(row), 5));

@@ -21,7 +21,7 @@ pub(crate) fn model_section(model: &ModelComparison) -> Markup {
         (scrolled(&format!("Discrepancies of model {}", model.model), &html! { table.discrepancies data-model=(model.model) {
             thead { tr {
                 th scope="col" { "quantity" } th.left scope="col" { "verdict" }
-                @for heading in ["relative", "tolerance", "bias", "reduced", "reference", "difference", "95 % band"] {
+                @for heading in ["relative", "tolerance", "bias", "reduced", "reference", "difference", "uncertainty (95 %)"] {
                     th scope="col" { (heading) }
                 }
                 @if common_mesh { th scope="col" { "of the difference" } }

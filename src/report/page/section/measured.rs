@@ -60,7 +60,8 @@ pub(crate) fn effects(measured: &Measured) -> impl Iterator<Item = (String, &str
 }
 
 fn alignment(measured: &Measured) -> Rows {
-    let heading = ["record", "samples", "first contact at", "offset and drift", "efficiency", "95 % band"];
+    let heading =
+        ["record", "samples", "first contact at", "offset and drift", "efficiency", "uncertainty (95 %)"];
     let row = |record: &AlignedRecord| {
         let corrections: Vec<String> = record
             .channels

@@ -99,7 +99,10 @@ fn what_is_no_distribution_is_told_with_its_place() {
             "\n\"plate.thickness\" = { uniform = [\"2.1 mm\", \"2.2 mm\"] }",
             ["does not contain the nominal value 0.002 m", "must enclose"],
         ),
-        ("\n\"inner.gap\" = { normal = \"1 um\" }", ["no nominal value `inner.gap`", "state `inner.gap` too"]),
+        (
+            "\n\"inner.gap\" = { normal = \"1 um\" }",
+            ["no nominal value `inner.gap`", "state `inner.gap` too"],
+        ),
         ("\n\"reduced.modes\" = \"1 %\"", ["takes whole numbers", "leave it out"]),
         ("\nfriction = \"1 %\"", ["only the reference uses it", "leave it out"]),
         ("", ["names no input", "\"plate.thickness\" = \"1 %\""]),
