@@ -162,7 +162,7 @@ pub struct ModelComparison {
 }
 
 /// What [`ModelComparison::largest`] is the largest of, for people.
-pub const AMONG: &str = "Largest discrepancy: the largest relative one among the single numbers of the summary (efficiency, velocities, \
+pub const AMONG: &str = "Largest difference: the largest relative one among the single numbers of the summary (efficiency, velocities, \
     directions, force peaks, impulses, ends of contact, first frequency). Not among them are the numbers of contacts, of which \
     one is 100 %, the distances of curves, and the conservation residuals.";
 

@@ -2,8 +2,9 @@
 
 use crate::comparison::{Discrepancy, ModelComparison, Verdict};
 use crate::format::model_name;
-use crate::report::SceneReport;
+use crate::report::conclusion::{assumptions, conclusion};
 use crate::report::figure::thumbnail::thumbnail;
+use crate::report::{SceneReport, kinds};
 use crate::result::Outcome;
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +17,11 @@ pub(crate) struct Overview {
     #[serde(default)]
     pub(crate) folder: String,
     pub(crate) verdict: Verdict,
+    /// What the comparison comes to, in words; and whether the assumptions hold.
+    #[serde(default)]
+    pub(crate) conclusion: String,
+    #[serde(default)]
+    pub(crate) assumptions: Option<String>,
     /// When it was compared (UTC), and the command line that compares it again.
     pub(crate) compared: Option<String>,
     pub(crate) command: String,
@@ -66,6 +72,8 @@ impl Overview {
             description: report.scene.description.clone(),
             folder: report.attachments.folder.clone(),
             verdict: comparison.verdict,
+            conclusion: conclusion(kinds::of(report.scene).columns(), comparison),
+            assumptions: assumptions(comparison).map(str::to_owned),
             compared: report.attachments.compared.clone(),
             command: report.command.clone(),
             models: models.map(|(model, outcome)| ModelOverview::of(report, model, outcome)).collect(),

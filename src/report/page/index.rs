@@ -9,7 +9,9 @@ use crate::report::export::Export;
 use crate::report::figure::thumbnail;
 use crate::report::overview::{ModelOverview, Overview, RowOverview};
 use crate::report::page::coverage;
-use crate::report::page::html::{EFFICIENCY, badge, named, number, page, scrolled, worded};
+use crate::report::page::html::{
+    EFFICIENCY, assumptions_badge, badge, named, number, page, scrolled, worded,
+};
 use crate::report::page::validated_map::ValidatedMap;
 use crate::report::run_times::marked;
 use crate::report::standing::{self, Folder, Standing};
@@ -48,7 +50,7 @@ pub(crate) fn index_of(report: &Report, scenes: &[Standing]) -> String {
         (contents(scenes))
         p #search hidden { label { "Search " input type="search" autocomplete="off"; } " " output role="status" {} }
         (scrolled("Scenes", &table(scenes)))
-        p.soft.note { "Curves: the first contact force, the reference in black under the models. Largest discrepancy: shaded by size, whatever the "
+        p.soft.note { "Curves: the first contact force, the reference in black under the models. Largest difference: shaded by size, whatever the "
             "verdict. Tolerance used: largest share of a tolerance that a quantity uses; where the reference's 95 % "
             "uncertainty contains the bound the verdict is undecided, and the scene's page shows how to decide it. Trend: numbers that "
             "drift over the commits recorded." }
@@ -85,11 +87,11 @@ const HEADINGS: [(&str, bool); 8] = [
     ("scene", true),
     ("model", true),
     ("verdict", true),
-    ("largest discrepancy of the summary", false),
+    ("largest difference", false),
     ("uncertainty (95 %)", false),
     ("tolerance used", false),
     ("efficiency", false),
-    ("drift", false),
+    ("trend", false),
 ];
 
 /// The folders in the order in which the scenes name them.
@@ -144,6 +146,12 @@ fn table(scenes: &[Standing]) -> Markup {
 fn scene_rows(scene: &Standing) -> Markup {
     let overview = &scene.overview;
     html! {
+        @if !overview.conclusion.is_empty() {
+            tr.conclusion { td.left colspan="10" {
+                strong { (link(overview)) } ": " (overview.conclusion)
+                @if let Some(words) = &overview.assumptions { " " (assumptions_badge(words)) }
+            } }
+        }
         @for model in &overview.models { (row(scene, model)) }
         @if overview.models.is_empty() {
             tr { td {} th.left scope="row" { (link(overview)) } td.left { "–" } td.left { (badge(overview.verdict)) } td colspan="6" {} }

@@ -3,7 +3,7 @@
   "use strict";
   const table = document.querySelector("table.verdicts");
   const original = [...table.tBodies].map((body) => [body, [...body.rows]]);
-  const rows = original.flatMap(([, all]) => all).filter((row) => !row.classList.contains("folder"));
+  const rows = original.flatMap(([, all]) => all).filter((row) => !row.matches(".folder, .conclusion"));
   const value = (row, column) => {
     const { sort, si } = row.cells[column].dataset;
     const number = sort ?? si;
@@ -33,6 +33,7 @@
   search.querySelector("input").addEventListener("input", ({ target }) => {
     const words = target.value.toLowerCase().split(/\s+/);
     const found = rows.filter((row) => (row.hidden = !words.every((word) => row.textContent.toLowerCase().includes(word))) === false);
+    table.querySelectorAll(".conclusion").forEach((row) => (row.hidden = target.value !== ""));
     search.querySelector("output").textContent = target.value ? `${found.length} of ${rows.length} rows` : "";
   });
 })();
