@@ -199,7 +199,7 @@
 
   // the index sorts, returns to its order, and finds
   async function index() {
-    const rows = () => [...document.querySelectorAll("table.verdicts tbody tr:not(.folder)")];
+    const rows = () => [...document.querySelectorAll("table.verdicts tbody tr:not(.folder):not(.conclusion)")];
     const before = rows().map((row) => row.textContent);
     const column = 4, button = document.querySelectorAll("table.verdicts thead th")[column].querySelector("button");
     const sizes = () => rows().map((row) => Number(row.cells[column].dataset.sort));

@@ -35,7 +35,7 @@ const START_LEVEL: i32 = 8;
 /// Integrates the impact of `system` in a `fluid`.
 ///
 /// # Errors
-/// [`Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of its base length, or the run does
+/// [`crate::Error::Solver`] if a contact has no equilibrium, the step falls below 2^-44 of its base length, or the run does
 /// not end.
 pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Result<Integration> {
     let collocation = Collocation::radau();

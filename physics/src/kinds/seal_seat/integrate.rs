@@ -39,7 +39,7 @@ pub struct Options {
 /// Runs the impact.
 ///
 /// # Errors
-/// [`Error::Solver`] if the contact forces do not converge, or contact does not end.
+/// [`crate::Error::Solver`] if the contact forces do not converge, or contact does not end.
 pub fn integrate(system: &System, options: &Options) -> Result<Integration> {
     integrate_from(system, system.start(), options)
 }
