@@ -32,7 +32,7 @@ pub const BANDWIDTH: f64 = 100e3;
 pub const RULE: &str = "Offset and drift of a signal come from the free flight before the first and after the last contact, where the \
 velocity is constant: a velocity is fitted there with a step, an offset and a drift, a displacement with a straight line \
 on each side. Before the impact the inner body is at rest and the outer one has the scene's speed (with `--speed measured` \
-the speed is read from the signal, which then has no offset). A displacement is zero at the first touch. The shift in time \
+the speed is read from the signal, which then has no offset). A displacement is zero at the first contact. The shift in time \
 is the one that minimises the squared distance to the reference, filtered to the instrument's bandwidth, over the contact and \
 as much time before and after it; each signal over its noise in free flight (at least 1 % of its span) and with any offset, drift \
 and amplitude, so that another speed or efficiency hardly moves it. The efficiency is that of the measured velocities. Its 95 % interval \

@@ -35,24 +35,18 @@ const WORDS: [(&str, &str); 25] = [
     (r"modes left", "truncated modes"),
 ];
 
-/// Sentences of the program: texts in its sources with a space, tests apart.
+/// Sentences of the program: texts in its sources with a space, without their placeholders; unit tests are the last of a file.
 fn sentences(source: &Source) -> Vec<String> {
-    let product = source.code.split("#[cfg(test)]").next().unwrap_or_default();
-    // quotes that begin no text: raw texts, characters
-    let other = Regex::new(r##"(?s)\br#".*?"#|\br"[^"]*"|'\\?"'"##).expect("expression");
-    let product = other.replace_all(product, "");
-    let text = Regex::new(r#""((?:[^"\\]|\\.)*)""#).expect("expression");
+    let code = std::fs::read_to_string(Path::new(ROOT).join(&source.path)).unwrap_or_default();
+    let product = code.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    // comments, raw texts and characters first: their quotes begin no text
+    let text =
+        Regex::new(r##"(?s)//[^\n]*|\br#".*?"#|\br"[^"]*"|'\\?.'|"((?:[^"\\]|\\.)*)""##).expect("expression");
     let placeholder = Regex::new(r"\{[^}]*\}").expect("expression");
-    let found = text.captures_iter(&product).map(|found| found[1].replace("\\\n", " "));
-    let found = found.map(|text| placeholder.replace_all(&text, "").into_owned());
-    found.filter(|text| text.trim().contains(' ') && !is_code(text)).collect()
-}
-
-/// Whether this is what lies between two texts: a quote in a comment's place makes it look like one.
-fn is_code(text: &str) -> bool {
-    ["::", "let ", "(|", ").", "))", ".join(", "fn ", "=> ", "DEAR", ", partner."]
-        .iter()
-        .any(|mark| text.contains(mark))
+    let found = text.captures_iter(product).filter_map(|found| found.get(1));
+    let found =
+        found.map(|text| placeholder.replace_all(&text.as_str().replace("\\\n", " "), "").into_owned());
+    found.filter(|text| text.trim().contains(' ')).collect()
 }
 
 /// Pages of the guide: what is no code.

@@ -128,7 +128,7 @@ pub fn run(note: &mut Note) -> Result<Study> {
                       length at which 4 N mm give that speed. The paper does not specify how fast the bender's moment decays: at \
                       once, higher modes take a quarter of the strain energy and slow the tip where it strikes, and the paper's \
                       efficiencies are out of reach; with a discharge over 0.1 to 0.2 ms, shorter than the mechanical time \
-                      constant of 0.32 ms as section 2.2.2 asks, they are met. The value for the claims is fitted.",
+                      constant of 0.32 ms as section 2.2.2 requires, they are met. The value for the claims is fitted.",
         "case, discharge_time [s], beam_length [m], inner_velocity_final [m/s], efficiency, \
          strain_energy_efficiency, inner_force_peak [N], inner_contact_end [s]",
         rows,
