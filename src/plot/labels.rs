@@ -39,7 +39,21 @@ impl Rect {
 
     /// Distance of the nearest point.
     fn clearance<'a>(&self, points: impl IntoIterator<Item = &'a Point>) -> f64 {
-        points.into_iter().map(|p| self.distance_squared(*p)).fold(f64::INFINITY, f64::min).sqrt()
+        self.clearance_from(points, 0.0).unwrap_or(0.0)
+    }
+
+    /// Distance of the nearest point; `None` as soon as one is nearer than `least`.
+    fn clearance_from<'a>(&self, points: impl IntoIterator<Item = &'a Point>, least: f64) -> Option<f64> {
+        // equal distances pass, however the square is rounded
+        let bound = least.max(0.0).powi(2) * (1.0 - 1e-12);
+        let mut nearest = f64::INFINITY;
+        for point in points {
+            nearest = nearest.min(self.distance_squared(*point));
+            if nearest < bound {
+                return None;
+            }
+        }
+        Some(nearest.sqrt())
     }
 }
 
@@ -48,8 +62,13 @@ const DISTANCES: [f64; 7] = [4.0, 8.0, 13.0, 22.0, 34.0, 50.0, 70.0];
 /// Distance from which on a line leads from the label to its curve, px.
 const LEADER_FROM: f64 = 10.0;
 
+/// Clearance of a box that is enough, px.
+const ENOUGH_ROOM: f64 = 14.0;
 /// By how much nearer to its own curve than to others a label counts at least and at most, px.
 const APART: (f64, f64) = (-20.0, 30.0);
+
+/// Score of a label for a px of clearance.
+const CLEAR: f64 = 10.0;
 
 /// Where a label stands.
 pub(crate) struct Label {
@@ -83,10 +102,15 @@ impl LabelRoom {
                     width,
                     height,
                 };
-                let room =
-                    rect.clearance(self.curves.iter().flatten()).min(self.room_between(&rect)).min(14.0);
-                if room >= best.0 {
-                    best = (room, rect);
+                let between = self.room_between(&rect).min(ENOUGH_ROOM);
+                if between < best.0 {
+                    continue;
+                }
+                let Some(free) = rect.clearance_from(self.curves.iter().flatten(), best.0) else {
+                    continue;
+                };
+                if free.min(between) >= best.0 {
+                    best = (free.min(between), rect);
                 }
             }
         }
@@ -111,16 +135,18 @@ impl LabelRoom {
                 if !self.area.contains(&rect) {
                     continue;
                 }
-                let score = |free: f64, apart: f64| 10.0 * free.min(2.5) + apart / 5.0 - 0.15 * distance;
+                let score = |free: f64, apart: f64| CLEAR * free.min(2.5) + apart / 5.0 - 0.15 * distance;
                 // most places can't be the best, whatever the curves
                 let between = self.room_between(&rect);
                 if score(between, APART.1) <= best.0 {
                     continue;
                 }
-                let free = rect.clearance(self.curves.iter().flatten()).min(between);
-                if score(free, APART.1) <= best.0 {
+                // the clearance that a better score needs
+                let least = (best.0 - score(0.0, APART.1)) / CLEAR;
+                let Some(free) = rect.clearance_from(self.curves.iter().flatten(), least) else {
                     continue;
-                }
+                };
+                let free = free.min(between);
                 let near = rect.clearance(own);
                 let apart = rect.clearance(others.iter().flatten()) - near;
                 let score = score(free, apart.clamp(APART.0, APART.1));
