@@ -32,6 +32,8 @@ const DIFFERENCE_BOUND: f64 = 1e-5;
 const END_BOUND: f64 = 3e-4;
 /// Error that the results of a sweep's point may have: a sweep's default.
 const SWEEP_ERROR: f64 = sweep::DEFAULT_TOLERANCE;
+/// Tolerance of the solution that judges a sweep's point where the result differs from it.
+const CAREFUL: f64 = 1e-11;
 /// One point of a sweep in so many may be wrong.
 const WRONG_POINTS: u64 = 1000;
 /// Bounds of the invariants. Momentum relative to the initial one; energy gained relative to the initial one; differences to the
@@ -279,12 +281,22 @@ fn judge(impact: &StressImpact, result: &Integration, solved: &mut StressRun) ->
     broken
 }
 
-/// Compares a sweep's `point` with the `result`.
+/// Compares a sweep's `point` with the `result`; where they differ, with a solution whose error is certainly the smaller one.
 fn compare_point(impact: &StressImpact, point: &Integration, result: &Integration) -> SweepPoint {
     if point.error_estimate.is_some_and(|error| error > SWEEP_ERROR) {
         return SweepPoint::Unconverged;
     }
-    let found = Answer::from(point).differences(Answer::from(result), &impact.system);
-    let right = [found.velocity, found.force, found.end].iter().all(|difference| *difference <= SWEEP_ERROR);
-    if right && found.contacts.is_none() { SweepPoint::Right } else { SweepPoint::Wrong }
+    let agrees = |with: &Integration| {
+        let found = Answer::from(point).differences(Answer::from(with), &impact.system);
+        let within =
+            [found.velocity, found.force, found.end].iter().all(|difference| *difference <= SWEEP_ERROR);
+        within && found.contacts.is_none()
+    };
+    let careful = Options { tolerance: CAREFUL, ..options(impact) };
+    let solved = || integrate(&impact.system, impact.forces.as_ref(), &careful);
+    if agrees(result) || solved().is_ok_and(|careful| agrees(&careful)) {
+        SweepPoint::Right
+    } else {
+        SweepPoint::Wrong
+    }
 }

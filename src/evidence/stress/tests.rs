@@ -249,17 +249,20 @@ fn a_plate_that_comes_back_to_the_inner_body_is_refused() {
     assert_eq!((report.failures, report.beyond_model), (vec![], vec![14_000_069_294]));
 }
 
-/// The light plate leaves the inner body, 956 times as heavy as the outer one, so slowly that the time of release was off by 3.02e-4.
+/// The light plate leaves the inner body, 956 times as heavy as the outer one, so slowly that the time of release was off by 3.02e-4. An
+/// inner body of 0.0035 of the outer one vibrates on its contact, which moves its release by 4.6e-4 with the forces known to 1e-10.
 #[test]
-fn a_slow_release_is_solved_again() {
-    assert_eq!(run(1, 38_000_000_145, &|| ()).unwrap().failures, []);
+fn an_uncertain_release_is_solved_again() {
+    for seed in [38_000_000_145, 43_000_001_781] {
+        assert_eq!(run(1, seed, &|| ()).unwrap().failures, []);
+    }
 }
 
 /// A light plate bounces between the bodies while they part: points of a sweep once had five contacts for seven, and releases that were
-/// 1e-3 and 7e-3 off.
+/// 1e-3 and 7e-3 off. A light inner body vibrates on its contact, and the first solution was 1.5e-3 off.
 #[test]
 fn points_of_a_sweep_are_right_or_say_that_they_are_not() {
-    for seed in [30_000_000_172, 31_000_000_143, 32_000_003_614] {
+    for seed in [30_000_000_172, 31_000_000_143, 32_000_003_614, 43_000_000_074] {
         assert_eq!(run(1, seed, &|| ()).unwrap().sweep.wrong.len(), 0, "{seed}");
     }
 }

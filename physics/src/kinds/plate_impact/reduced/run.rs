@@ -288,7 +288,8 @@ impl Reduced {
 
 /// Contacts that nearly join, part or touch once more, so that their number may be another.
 fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
-    let near = |contact: &ContactLedger| contact.least_turn <= assured::ENOUGH * tolerance;
+    let error = result.error_estimate.unwrap_or(0.0).max(tolerance);
+    let near = |contact: &ContactLedger| contact.least_turn <= assured::ENOUGH * error;
     let bodies = ["outer", "inner"].into_iter().zip(&result.contacts);
     bodies
         .filter(|(_, contact)| contact.contacts > 0 && near(contact))
