@@ -18,7 +18,7 @@ pub const CLOSED_FORM: &str = "closed form";
 /// The features of the first kind, those of any scene, those of other kinds.
 pub fn features() -> impl Iterator<Item = &'static Feature> {
     static OF_ANY: [Feature; 1] = [Feature::new("run cut by its end time", |s| s.run.end_time.is_some())];
-    let mut kinds = KINDS.into_iter().map(|kind| kind.features());
+    let mut kinds = KINDS.iter().map(|kind| kind.features());
     kinds.next().into_iter().flatten().chain(&OF_ANY).chain(kinds.flatten())
 }
 

@@ -24,8 +24,8 @@ pub struct Arguments {
 
 /// Takes the name of a kind.
 fn starters() -> impl TypedValueParser<Value = Starter> {
-    let names = KINDS.map(|kind| PossibleValue::new(kind.name()).help(kind.starter().about));
-    let named = |name: String| KINDS.into_iter().find(|kind| kind.name() == name);
+    let names = KINDS.iter().map(|kind| PossibleValue::new(kind.name()).help(kind.starter().about));
+    let named = |name: String| KINDS.iter().find(|kind| kind.name() == name);
     PossibleValuesParser::new(names).map(move |name| named(name).expect("a possible value").starter())
 }
 

@@ -67,7 +67,7 @@ fn samples(text: &str) -> std::result::Result<RowCount, String> {
 /// A result that scatters.
 fn quantity(name: &str) -> std::result::Result<String, String> {
     let names = || {
-        let sampled = KINDS.into_iter().filter(|kind| kind.serves(Use::Samples));
+        let sampled = KINDS.iter().filter(|kind| kind.serves(Use::Samples));
         sampled
             .flat_map(|kind| kind.quantities())
             .filter(|quantity| !quantity.is_count)

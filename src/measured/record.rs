@@ -53,7 +53,7 @@ impl Record {
     }
 
     fn parse(path: &Path, bytes: &[u8]) -> std::result::Result<Self, String> {
-        let curves = KINDS.into_iter().flat_map(|kind| kind.curves());
+        let curves = KINDS.iter().flat_map(|kind| kind.curves());
         let known: Vec<Curve> = curves.filter(|curve| SIGNALS.contains(&curve.name)).cloned().collect();
         let mut reader = table::csv_reader(bytes, b',');
         let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();

@@ -49,29 +49,32 @@ const BAND_ROUNDING: f64 = 0.005;
 /// Bytes of a mesh file within which its number of points stands.
 const MESH_HEAD: u64 = 4096;
 
-/// Whether the files with values on the mesh (`.vtu`) must be there. They are large, show pictures only, and are made again by
-/// a computation: a repository may leave them out. What is there must be intact.
+/// Where a solution comes from, and so which files it must have. The files with values on the mesh (`.vtu`) are large, show pictures
+/// only, and a computation makes them again: a repository may omit them. What is there must be intact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum MeshFiles {
-    Required,
-    Optional,
-    /// Another program's result has none.
-    None,
+pub(super) enum Origin {
+    /// It has just been computed, with all files.
+    Computed,
+    /// It is stored; mesh files may be missing.
+    Stored,
+    /// Another program's result, which has no mesh file.
+    Imported,
 }
 
-impl MeshFiles {
+impl Origin {
     /// Of a stored entry.
     pub(super) fn of(resolution: Resolution) -> Self {
-        if resolution.is_of_another_program() { MeshFiles::None } else { MeshFiles::Optional }
+        if resolution.is_of_another_program() { Origin::Imported } else { Origin::Stored }
     }
 }
 
 /// Verifies the folder's checksums and reads it; what the solver can't know, how near the solution comes to the bounds of its
 /// theories, is judged by `scene`.
-pub(super) fn load(scene: &Scene, folder: &Path, mesh_files: MeshFiles) -> Result<Stored, Damage> {
-    verify(folder, mesh_files)?;
+pub(super) fn load(scene: &Scene, folder: &Path, origin: Origin) -> Result<Stored, Damage> {
+    let (kind, is_imported) = (kinds::of(scene), origin == Origin::Imported);
+    let has_mesh = kind.has_mesh() && !is_imported;
+    verify(folder, has_mesh, origin == Origin::Stored)?;
     let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
-    let (kind, is_imported) = (kinds::of(scene), mesh_files == MeshFiles::None);
     let mut summary = Summary::read(kind.quantities(), &text(folder, SUMMARY)?)
         .map_err(|e| damage(SUMMARY, format!("is not what is expected: {e}")))?;
     let provenance: Value = read_json(folder, PROVENANCE)?;
@@ -92,7 +95,7 @@ pub(super) fn load(scene: &Scene, folder: &Path, mesh_files: MeshFiles) -> Resul
             format!("scene_hash is {}, but {} in {SUMMARY}", provenance["scene_hash"], summary.scene_hash);
         return Err(damage(PROVENANCE, reason));
     }
-    if !is_imported {
+    if has_mesh {
         let dofs = finest_dofs(&summary).ok_or_else(|| damage(SUMMARY, NO_SERIES.to_owned()))?;
         check_mesh(folder, dofs).map_err(|reason| damage(MESH, reason))?;
     }
@@ -166,19 +169,19 @@ fn text(folder: &Path, name: &str) -> Result<String, Damage> {
     std::fs::read_to_string(&file).map_err(|e| Damage { file, reason: format!("can't be read: {e}") })
 }
 
-fn verify(folder: &Path, mesh_files: MeshFiles) -> Result<(), Damage> {
+/// That all files that the folder lists are intact, and all that it must have are listed; with `may_lack_fields` files with values on the
+/// mesh may be missing.
+fn verify(folder: &Path, has_mesh: bool, may_lack_fields: bool) -> Result<(), Damage> {
     let damage = |file: &str, reason: String| Damage { file: folder.join(file), reason };
     let text = std::fs::read_to_string(folder.join(CHECKSUMS))
         .map_err(|e| damage(CHECKSUMS, format!("can't be read: {e}")))?;
     let listed = parse_checksums(&text).map_err(|reason| damage(CHECKSUMS, reason))?;
-    let needed = |name: &&&str| mesh_files != MeshFiles::None || **name != MESH;
+    let needed = |name: &&&str| has_mesh || **name != MESH;
     if let Some(name) = REQUIRED.iter().filter(needed).find(|name| !listed.contains_key(**name)) {
         return Err(damage(CHECKSUMS, format!("does not list {name}")));
     }
-    let left_out = |name: &str| {
-        mesh_files == MeshFiles::Optional && name.ends_with(".vtu") && !folder.join(name).exists()
-    };
-    for (name, expected) in listed.into_iter().filter(|(name, _)| !left_out(name)) {
+    let is_omitted = |name: &str| may_lack_fields && name.ends_with(".vtu") && !folder.join(name).exists();
+    for (name, expected) in listed.into_iter().filter(|(name, _)| !is_omitted(name)) {
         let found =
             sha256_file(&folder.join(name)).map_err(|e| damage(name, format!("can't be read: {e}")))?;
         if !found.eq_ignore_ascii_case(expected) {

@@ -119,11 +119,11 @@ pub fn solve_with(
     if !output.is_dir() {
         return Err(unusable("it wrote no result".to_owned()));
     }
-    let mesh_files = match entry::MeshFiles::of(resolution) {
-        entry::MeshFiles::None => entry::MeshFiles::None,
-        _ => entry::MeshFiles::Required,
+    let origin = match entry::Origin::of(resolution) {
+        entry::Origin::Stored => entry::Origin::Computed,
+        imported => imported,
     };
-    let stored = entry::load(scene, &output, mesh_files).map_err(|d| {
+    let stored = entry::load(scene, &output, origin).map_err(|d| {
         let file = d.file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         unusable(format!("its {file} {}", d.reason))
     })?;

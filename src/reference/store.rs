@@ -5,7 +5,7 @@
 //! A solution of another scene of the same name, or with other settings, is not replaced: it moves to a folder beside that
 //! is named after its hashes (`paper.0123abcd-4567ef89`), where it is found when its scene is asked for again.
 
-use super::entry::{self, Damage, MeshFiles, Stored};
+use super::entry::{self, Damage, Origin, Stored};
 use super::turn::Turn;
 use super::{Resolution, identity};
 use crate::interrupt::{Parent, Scratch};
@@ -318,7 +318,7 @@ fn examine(folder: &Path, scene: &Scene, resolution: Resolution) -> Lookup {
         }
         Ok(_) => {}
     }
-    let stored = match entry::load(scene, folder, MeshFiles::of(resolution)) {
+    let stored = match entry::load(scene, folder, Origin::of(resolution)) {
         Ok(stored) => stored,
         Err(damage) => return damage.into(),
     };

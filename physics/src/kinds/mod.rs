@@ -78,11 +78,11 @@ pub trait Kind: Language {
 }
 
 /// All kinds.
-pub const KINDS: [&dyn Kind; 2] = [&plate_impact::Kind, &seal_seat::Kind];
+pub const KINDS: &[&dyn Kind] = &[&plate_impact::Kind, &seal_seat::Kind];
 
 /// The kind called `name`.
 pub fn named(name: &str) -> Option<&'static dyn Kind> {
-    KINDS.into_iter().find(|kind| kind.name() == name)
+    KINDS.iter().copied().find(|kind| kind.name() == name)
 }
 
 /// The kind of `scene`.

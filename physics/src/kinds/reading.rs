@@ -17,7 +17,7 @@ static GRAMMAR: LazyLock<Grammar> = LazyLock::new(|| {
         gated: gated(kind),
         language: kind,
     };
-    Grammar::new(KINDS.into_iter().map(dialect).collect())
+    Grammar::new(KINDS.iter().copied().map(dialect).collect())
 });
 
 /// The JSON schema (draft 2020-12) of scene files.

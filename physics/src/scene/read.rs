@@ -22,19 +22,30 @@ impl Grammar {
     /// # Errors
     /// [`Error::Scene`] with every fault, its place and what would be valid.
     pub(crate) fn parse(&self, source_name: &str, text: &str) -> Result<Scene> {
-        let (values, beside) = self.checked(source_name, text)?;
-        let scene = self.assemble(&values, beside)?;
-        refuse_collisions(&scene, source_name, text)?;
-        Ok(scene)
+        Ok(self.parse_values(source_name, text)?.0)
     }
 
-    /// The checked values of a scene file, and what stands beside them.
+    /// As [`Self::parse`], with the checked values of the file.
     ///
     /// # Errors
     /// As [`Self::parse`].
-    pub(super) fn checked(&self, source_name: &str, text: &str) -> Result<(Values, Beside)> {
+    pub(super) fn parse_values(&self, source_name: &str, text: &str) -> Result<(Scene, Values)> {
         let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
-        let root = tree.get_ref();
+        let (values, settings) = self.checked(source_name, text, tree.get_ref())?;
+        let scene = self.assemble(&values, settings)?;
+        let mut problems = Collector::new(source_name, text);
+        note(collisions(&scene), tree.get_ref(), &mut problems);
+        match problems.is_empty() {
+            true => Ok((scene, values)),
+            false => Err(Error::Scene(problems.into_report())),
+        }
+    }
+
+    /// The checked values of the table `root`, and its tables that have readers of their own.
+    ///
+    /// # Errors
+    /// As [`Self::parse`].
+    fn checked(&self, source_name: &str, text: &str, root: &DeTable) -> Result<(Values, Settings)> {
         if root.is_empty() {
             return Err(refused(
                 &format!("{source_name}, line 1: the scene file has no content"),
@@ -61,13 +72,13 @@ impl Grammar {
             }
         }
         match checker.problems.is_empty() {
-            true => Ok((values, Beside { tolerances, uncertainty })),
+            true => Ok((values, Settings { tolerances, uncertainty })),
             false => Err(Error::Scene(checker.problems.into_report())),
         }
     }
 
     /// The scene that checked values describe.
-    pub(super) fn assemble(&self, values: &Values, beside: Beside) -> Result<Scene> {
+    pub(super) fn assemble(&self, values: &Values, settings: Settings) -> Result<Scene> {
         let root = &Node(values);
         let materials = root.table("materials")?;
         let name = root.text("kind")?;
@@ -85,8 +96,8 @@ impl Grammar {
             run: RunSettings { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
             reduced: reduced(root.optional_table("reduced")?)?,
             reference,
-            tolerances: beside.tolerances,
-            uncertainty: beside.uncertainty,
+            tolerances: settings.tolerances,
+            uncertainty: settings.uncertainty,
             flight: flight(root)?,
             vibration: vibration(root)?,
             external: root.tables("external")?.iter().map(external).collect::<Result<_>>()?,
@@ -135,30 +146,18 @@ fn too_large(name: &str, size: String) -> Error {
     )
 }
 
-/// What a scene file says beside the impact; its tables have readers of their own.
+/// Settings of a scene file that are no part of the impact; their tables have readers of their own.
 #[derive(Debug, Clone)]
-pub(super) struct Beside {
+pub(super) struct Settings {
     pub(super) tolerances: BTreeMap<String, Tolerances>,
     pub(super) uncertainty: Option<Uncertainty>,
 }
 
-/// Refuses a scene whose features collide, with the place of the first field at fault.
-///
-/// # Errors
-/// [`Error::Scene`] with every collision.
-pub(super) fn refuse_collisions(scene: &Scene, source_name: &str, text: &str) -> Result<()> {
-    let mut collisions = scene.setup.bodies().collisions();
+/// Features of `scene` that collide.
+fn collisions(scene: &Scene) -> Vec<Collision> {
+    let collisions = scene.setup.bodies().collisions();
     // a chamber made of bodies that can't be means nothing
-    if collisions.is_empty() {
-        collisions = super::flight::collisions(scene);
-    }
-    if collisions.is_empty() {
-        return Ok(());
-    }
-    let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
-    let mut problems = Collector::new(source_name, text);
-    note(collisions, tree.get_ref(), &mut problems);
-    Err(Error::Scene(problems.into_report()))
+    if collisions.is_empty() { super::flight::collisions(scene) } else { collisions }
 }
 
 /// Notes `collisions` at the first of their fields that the file has.

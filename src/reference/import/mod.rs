@@ -4,7 +4,7 @@
 mod calculix;
 mod mapping;
 
-use super::entry::{self, MeshFiles, Stored};
+use super::entry::{self, Origin, Stored};
 use super::store::Installed;
 use super::{Resolution, Store, identity};
 use crate::curves::table::{self, Columns};
@@ -188,7 +188,7 @@ fn install(scene: &Scene, store: &Store, outcome: &Outcome, provenance: &str) ->
         let path = made.join(name);
         std::fs::write(&path, text).map_err(|e| Error::io("writing", &path, e))?;
     }
-    let stored = entry::load(scene, &made, MeshFiles::None).map_err(|damage| {
+    let stored = entry::load(scene, &made, Origin::Imported).map_err(|damage| {
         Error::Internal(format!("the import's {}: {}", damage.file.display(), damage.reason))
     })?;
     let Installed { folder, earlier } = store.install(&work, &made, scene, Resolution::Imported)?;

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-import meshio
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -131,10 +129,7 @@ def _contact(times: Floats, approach: Floats, force: Floats, impulse: float) -> 
 def solver(scene: SpringScene) -> ImpactSolver[Solution]:
     """How the scene is solved."""
 
-    def details(folder: Path, *_: Any) -> Details:
-        # the store asks for the file of a mesh: here the centre of the sphere and the mass
-        points = np.array([[0.0, 0.0, -scene.sphere.radius], [0.0, 0.0, 0.0]])
-        meshio.write_points_cells(folder / "mesh.vtu", points, [("vertex", np.array([[0], [1]]))])
+    def details(*_: Any) -> Details:
         return Details(contacts=("sphere",), duration=_duration(scene))
 
     return ImpactSolver(

@@ -67,7 +67,7 @@ fn alignment(measured: &Measured) -> Rows {
             .channels
             .iter()
             .map(|c| {
-                let mut curves = KINDS.into_iter().flat_map(|kind| kind.curves());
+                let mut curves = KINDS.iter().flat_map(|kind| kind.curves());
                 let unit = curves.find(|curve| curve.name == c.quantity).map_or("1", |curve| curve.unit);
                 format!(
                     "{}: {}, {} {unit}/s",

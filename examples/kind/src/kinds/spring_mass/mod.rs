@@ -14,4 +14,8 @@ impl super::Kind for Kind {
             [Feature::new("mass on a spring", |scene| scene.setup.kind() == NAME)];
         &FEATURES
     }
+
+    fn has_mesh(&self) -> bool {
+        false
+    }
 }
