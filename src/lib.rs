@@ -4,6 +4,11 @@
 //! shown here as [`scene`], [`body`], [`contact`], [`fluid`], [`dynamics`], [`result`] and [`kinds`]; the program
 //! compares what comes out with a [`reference`](mod@reference) and reports it: [`comparison`] -> [`report`].
 //!
+//! # Cookbook
+//!
+//! Compare a model with the stored finite-element solution of the same scene. Models of your own, sweeps over a number: see the cookbook
+//! of `impactcheck-physics`.
+//!
 //! ```
 //! use impactcheck::comparison::compare_scene;
 //! use impactcheck::kinds::plate_impact::reduced::Reduced;
@@ -19,6 +24,21 @@
 //! let comparison = compare_scene(&scene, &stored.outcome, &[reduced]);
 //! let row = comparison.models[0].largest().expect("a row");
 //! println!("{} is {:.1} % off", row.quantity, 100.0 * row.relative.unwrap_or(f64::NAN));
+//! # Ok::<(), impactcheck::Error>(())
+//! ```
+//!
+//! Propagate uncertain inputs through a model:
+//!
+//! ```
+//! use impactcheck::scene::{Model, Template};
+//! use impactcheck::uncertainty::{Request, Samples, study};
+//! use std::path::Path;
+//!
+//! let file = Path::new("examples/uncertainty/table1-r10.toml");
+//! let template = Template::read(file)?;
+//! let request = Request { samples: Samples::Rows(64), ..Request::new(Model::B, 0.05) };
+//! let result = study((file, &template), &request, None, &|_| ())?;
+//! println!("efficiency {:?}", result.quantities["efficiency"]);
 //! # Ok::<(), impactcheck::Error>(())
 //! ```
 #![warn(missing_docs)]

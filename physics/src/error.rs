@@ -54,6 +54,14 @@ pub enum Error {
     /// A defect of the program.
     #[error("internal error: {0}")]
     Internal(String),
+    /// Another error, with what the user can do.
+    #[error("{error}")]
+    Hinted {
+        /// What is wrong.
+        error: Box<Error>,
+        /// What to do, a sentence each.
+        hints: Vec<String>,
+    },
 }
 
 impl Error {
@@ -67,7 +75,24 @@ impl Error {
             // Somebody named a file where a folder is needed, or the other way round.
             Error::Io { source, .. } if is_of_the_wrong_kind(source.kind()) => ExitStatus::Usage,
             Error::Io { .. } | Error::Internal(_) => ExitStatus::Internal,
+            Error::Hinted { error, .. } => error.exit_status(),
         }
+    }
+
+    /// The same error with `hints`: what the user can do.
+    #[must_use]
+    pub fn hint(self, hints: impl IntoIterator<Item = String>) -> Self {
+        let (error, mut all) = match self {
+            Error::Hinted { error, hints } => (error, hints),
+            other => (Box::new(other), Vec::new()),
+        };
+        all.extend(hints);
+        Error::Hinted { error, hints: all }
+    }
+
+    /// What the user can do, a sentence each.
+    pub fn hints(&self) -> &[String] {
+        if let Error::Hinted { hints, .. } = self { hints } else { &[] }
     }
 
     /// Wraps what the system said about `path`.

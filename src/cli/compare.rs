@@ -3,7 +3,7 @@
 use super::compare_arguments::Arguments;
 use super::comparison_job::Job;
 use super::{Context, compare_inputs, kinds, stored_references};
-use crate::error::{Error, ExitStatus, Result};
+use crate::error::{ExitStatus, Result};
 use crate::report;
 use clap::Args;
 
@@ -32,7 +32,7 @@ pub fn run(context: &Context, OwnArguments { shared, watch }: OwnArguments) -> R
     let files = compare_inputs::files(&arguments.scenes)?.into_iter().chain(arguments.measured.clone());
     super::watch::watch(&files.collect::<Vec<_>>(), || {
         once(context, arguments).inspect_err(|error| {
-            if matches!(error, Error::Reference(_)) {
+            if error.exit_status() == ExitStatus::Reference {
                 tell_alone(context, arguments);
             }
         })

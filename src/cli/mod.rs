@@ -12,6 +12,7 @@ mod diff;
 mod doctor;
 mod external;
 mod gate;
+mod help;
 pub mod in_process;
 mod kinds;
 mod mesh;
@@ -41,7 +42,7 @@ use std::path::PathBuf;
 
 /// How far can a fast reduced model of an impact be trusted?
 #[derive(Debug, Parser)]
-#[command(name = "impactcheck", version, about, after_help = EXIT_STATUS, max_term_width = 110)]
+#[command(name = "impactcheck", version, about, after_help = AFTER_HELP, max_term_width = 110)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -56,7 +57,7 @@ struct Cli {
     verbose: bool,
 }
 
-const EXIT_STATUS: &str = "Exit status: 0 pass, 1 internal error, 2 usage, 3 invalid scene, \
+const AFTER_HELP: &str = "Every command has these options; `impactcheck COMMAND --help` shows its own.\n\nExit status: 0 pass, 1 internal error, 2 usage, 3 invalid scene, \
 10 a tolerance is exceeded, 11 reference missing, stale or damaged, 12 a solver failed.";
 
 #[derive(Debug, Subcommand)]
@@ -77,26 +78,24 @@ enum Command {
     /// Compare, and fail if a tolerance is exceeded (for CI)
     #[command(after_help = "Example: impactcheck gate --junit gate.xml")]
     Gate(gate::Arguments),
-    /// List which features have been compared with an independent solution, and how models differ there
+    /// List the features that have been compared, and how models differ
     #[command(after_help = "Example: impactcheck coverage --json")]
     Coverage(coverage::Arguments),
-    /// List what changed between two comparisons (commits, versions, machines)
+    /// List what changed between two comparisons
     #[command(after_help = "Example: impactcheck diff old-report new-report --above 0.1%")]
     Diff(diff::Arguments),
     /// Mesh the seat of a seal-seat scene
     #[command(after_help = "Example: impactcheck mesh my-seat.toml --out my-seat.vtu")]
     Mesh(mesh::Arguments),
     /// Run a parameter study of the paper, or your own sweep
-    #[command(
-        after_help = "Examples: impactcheck study fig16 --out figures\n          impactcheck study sweep my-sweep.toml --format parquet"
-    )]
+    #[command(after_help = study::after_help())]
     Study(study::Arguments),
-    /// Propagate input uncertainty through a reduced model (standard deviations, Sobol indices)
+    /// Propagate input uncertainty through a reduced model
     #[command(
         after_help = "Example: impactcheck uncertainty examples/uncertainty/table1-r10.toml --out my-scatter"
     )]
     Uncertainty(uncertainty::Arguments),
-    /// Identify scene parameters from measured histories, and report which are not identifiable
+    /// Identify scene parameters from measured histories
     #[command(
         after_help = "Example: impactcheck calibrate my-impact.toml --over plate.thickness --measured run1.csv,run2.csv"
     )]
@@ -106,13 +105,13 @@ enum Command {
         after_help = "Example: impactcheck optimise scaled-plate-r10 --over plate.radius=15mm..60mm --over plate.thickness=1mm..3mm"
     )]
     Optimise(optimise::Arguments),
-    /// Measure run time against error, with other programs in the same run
+    /// Measure run time against error
     #[command(after_help = "Example: impactcheck bench --modes 16 --out my-bench")]
     Bench(bench::Arguments),
     /// Test the time integration on random scenes
     #[command(after_help = "Example: impactcheck stress --cases 1000 --seed 1")]
     Stress(stress::Arguments),
-    /// Show what is installed and how to install what is missing (exit status 12)
+    /// Show what is installed and how to install what is missing
     #[command(after_help = "Example: impactcheck doctor")]
     Doctor(JsonArgument),
     /// Print the JSON schema of scene files, for editors
@@ -187,9 +186,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 
 /// Runs the program with `arguments` (the first is its name) and gives the exit status.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
-    let cli = match Cli::try_parse_from(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,
         Err(error) => {
+            let error = with_help(error, &arguments);
             let status = if error.use_stderr() { ExitStatus::Usage } else { ExitStatus::Pass };
             // a closed pipe is no reason to fail
             let _ = error.print();
@@ -226,6 +227,17 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     })
 }
 
+/// `error` of the command line `arguments`; a request for help with the help as it is shown, which is costly to lay out.
+fn with_help(error: clap::Error, arguments: &[OsString]) -> clap::Error {
+    use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand};
+    match error.kind() {
+        DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand => {
+            help::command().try_get_matches_from(arguments).err().unwrap_or(error)
+        }
+        _ => error,
+    }
+}
+
 /// The scene that `argument` names, and its file; `-` is standard input, which can be read only once.
 fn read_scene(argument: &str) -> Result<(PathBuf, Scene)> {
     if argument == "-" {
@@ -238,12 +250,13 @@ fn read_scene(argument: &str) -> Result<(PathBuf, Scene)> {
     Scene::read(&file).map(|scene| (file, scene))
 }
 
-/// The error as a person reads it; scene errors come with the place in the file.
+/// The error as a person reads it, with its hints; scene errors come with the place in the file.
 fn describe(error: &Error) -> String {
-    match error {
+    let text = match error {
         Error::Scene(report) => format!("{report:?}"),
         other => format!("error: {other}"),
-    }
+    };
+    error.hints().iter().fold(text, |text, hint| format!("{text}\nhint: {hint}"))
 }
 
 /// A line on standard error, its colours only where they can be seen; a reader that has gone away is no error.

@@ -36,10 +36,9 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let file = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{named}.toml")));
     let name = named.rsplit(std::path::is_separator).next().unwrap_or(named);
     if file.exists() {
-        return Err(Error::Usage(format!(
-            "{} exists and is not overwritten; choose another name, or another file with --out",
-            file.display()
-        )));
+        let message = format!("{} exists and is not overwritten", file.display());
+        let hint = "choose another name, or another file with --out";
+        return Err(Error::Usage(message).hint([hint.into()]));
     }
     let text = format!("#:schema ./{FILE}\n{}", arguments.kind.text.replacen("NAME", name, 1));
     // a name that can't be one is refused as it would be in a file

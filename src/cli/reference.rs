@@ -120,12 +120,14 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         }
         Some(lookup @ Lookup::Damaged { .. }) => {
             let problem = problem(scene, resolution, &lookup);
-            return Err(Error::Reference(format!("{problem}; `--fresh` computes it again")));
+            return Err(Error::Reference(problem).hint(["add `--fresh` to compute it again".into()]));
         }
         other if resolution == Resolution::Imported => {
             let lookup = other.unwrap_or(Lookup::Missing);
             let problem = problem(scene, resolution, &lookup);
-            return Err(Error::Reference(format!("{problem}; `impactcheck reference import` takes one in")));
+            return Err(
+                Error::Reference(problem).hint(["import one with `impactcheck reference import`".into()])
+            );
         }
         other => {
             if let Some(lookup @ Lookup::Stale { .. }) = &other {
@@ -183,11 +185,9 @@ pub(super) fn require_sound(scene: &Scene, stored: &Stored) -> Result<()> {
     if broken.is_empty() {
         return Ok(());
     }
-    Err(Error::Reference(format!(
-        "{} contradicts itself or its scene; `--fresh` computes it again\n  {}",
-        stored.folder.display(),
-        broken.join("\n  ")
-    )))
+    let message =
+        format!("{} contradicts itself or its scene:\n  {}", stored.folder.display(), broken.join("\n  "));
+    Err(Error::Reference(message).hint(["add `--fresh` to compute it again".into()]))
 }
 
 /// What is wrong with what the store has.

@@ -1,10 +1,10 @@
 //! `impactcheck completions` and `impactcheck man`: what shell and manual need to know of the commands.
 
-use super::Cli;
+use super::help;
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::report;
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 use std::path::PathBuf;
 
@@ -24,7 +24,7 @@ pub struct ManArguments {
 /// Prints the completions of a shell.
 pub fn completions(arguments: &CompletionArguments) -> Result<ExitStatus> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Cli::command(), "impactcheck", &mut script);
+    clap_complete::generate(arguments.shell, &mut help::command(), "impactcheck", &mut script);
     super::print(String::from_utf8_lossy(&script).trim_end())?;
     Ok(ExitStatus::Pass)
 }
@@ -34,13 +34,13 @@ pub fn man(arguments: &ManArguments) -> Result<ExitStatus> {
     let failed = |e: std::io::Error| Error::Internal(format!("making the manual pages: {e}"));
     let Some(folder) = &arguments.out else {
         let mut page = Vec::new();
-        clap_mangen::Man::new(Cli::command()).render(&mut page).map_err(failed)?;
+        clap_mangen::Man::new(help::command()).render(&mut page).map_err(failed)?;
         super::print(String::from_utf8_lossy(&page).trim_end())?;
         return Ok(ExitStatus::Pass);
     };
     report::check_writable(folder)?;
     let made = tempfile::tempdir().map_err(failed)?;
-    clap_mangen::generate_to(Cli::command(), made.path()).map_err(failed)?;
+    clap_mangen::generate_to(help::command(), made.path()).map_err(failed)?;
     for page in std::fs::read_dir(made.path()).map_err(failed)? {
         let page = page.map_err(failed)?;
         write_file(&folder.join(page.file_name()), &std::fs::read(page.path()).map_err(failed)?)?;

@@ -16,7 +16,7 @@ pub(super) fn look_up(
     compute: bool,
     scenes: &[(PathBuf, Scene)],
 ) -> Result<Vec<Stored>> {
-    let (mut found, mut problems) = (Vec::new(), Vec::new());
+    let (mut found, mut problems, mut hints) = (Vec::new(), Vec::new(), Vec::new());
     for (file, scene) in scenes {
         let store = context.store().for_scene_in(file);
         match store.find_here_or_shipped(scene, resolution) {
@@ -26,26 +26,28 @@ pub(super) fn look_up(
                 found.push(reference::compute(context, scene, resolution, &store, &wish)?);
             }
             other => {
-                let problem = reference::problem(scene, resolution, &other);
-                let mut problem = format!("{problem}; {}", advice(context, file, scene, resolution, &other));
+                problems.push(reference::problem(scene, resolution, &other));
+                hints.push(advice(context, file, scene, resolution, &other));
                 let shipped = Store::shipped().ok().filter(|shipped| *shipped != store);
                 for store in [Some(&store), shipped.as_ref()].into_iter().flatten() {
                     let there: Vec<String> =
                         store.resolutions(scene).into_iter().map(Resolution::argument).collect();
                     if !there.is_empty() {
-                        problem += &format!(
-                            "; or compare with one that is there: add `--resolution {}` (in {})",
-                            there.join("`, `--resolution "),
+                        hints.push(format!(
+                            "or compare with a stored one: add `--resolution {}` (in {})",
+                            there.join("` or `--resolution "),
                             store.root().display()
-                        );
+                        ));
                     }
                 }
-                problems.push(problem);
             }
         }
     }
-    all_found(problems)?;
-    Ok(found)
+    if problems.is_empty() {
+        return Ok(found);
+    }
+    hints.push("`impactcheck doctor` shows what a computation needs".into());
+    Err(Error::Reference(problems.join("\n  ")).hint(hints))
 }
 
 /// The finest resolution that is stored of the only one of `scenes` if it has none at the default one; that it is used is printed.
@@ -94,18 +96,9 @@ fn advice(context: &Context, file: &Path, scene: &Scene, resolution: Resolution,
     };
     match lookup {
         _ if resolution == Resolution::Imported => {
-            format!("take one in with {}", command(&format!("import {named} --from FILE")))
+            format!("import one with {}", command(&format!("import {named} --from FILE")))
         }
         Lookup::Damaged { .. } => format!("compute it again with {}", command(&format!("{own} --fresh"))),
         _ => format!("compute it (seconds to minutes) with {}, or add `--compute`", command(&own)),
     }
-}
-
-/// One error that names every reference that can't be used, if there is any.
-fn all_found(mut problems: Vec<String>) -> Result<()> {
-    if problems.is_empty() {
-        return Ok(());
-    }
-    problems.push("`impactcheck doctor` shows what a computation needs".into());
-    Err(Error::Reference(problems.join("\n  ")))
 }

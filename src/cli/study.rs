@@ -27,9 +27,7 @@ enum Own {
 
 #[derive(Debug, Args)]
 struct Named {
-    /// Name of the study: table2, fig14, fig15, fig16, fig17, half-period (section 4.1),
-    /// insensitivity, auto, actuators, rocker, flight, valve, fluid, damping, shakedown, test-bed,
-    /// seal-seat (section 4.4), seal-seat-direction, seal-seat-cost
+    /// Name of the study, from the list below
     #[arg(required = true)]
     name: Option<String>,
     /// Reduced model, for the studies of figures [default: B, as in the paper]
@@ -47,6 +45,25 @@ struct Named {
     #[command(flatten)]
     json: JsonArgument,
 }
+
+/// What the help says after the options: each study in a line, and examples.
+pub(super) fn after_help() -> String {
+    let line = |entry: &study::Entry| {
+        let name = format!("  {:21}", entry.name);
+        let below = " ".repeat(name.len());
+        textwrap::fill(
+            entry.about,
+            textwrap::Options::new(WIDTH).initial_indent(&name).subsequent_indent(&below),
+        )
+    };
+    let studies: Vec<String> = study::STUDIES.iter().map(line).collect();
+    format!("Studies:\n{}\n\n{EXAMPLES}", studies.join("\n"))
+}
+
+/// Columns of the list of studies.
+const WIDTH: usize = 80;
+const EXAMPLES: &str = "Examples: impactcheck study fig16 --out figures
+          impactcheck study sweep my-sweep.toml --format parquet";
 
 /// Runs a study or a sweep.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::kinds::{self, INTENDED_SPEED};
-use crate::scene::{Scene, suggestion};
+use crate::scene::{Scene, unknown_name};
 
 /// A number of a result that is to be large.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,13 +38,8 @@ impl Objective {
         }
         let names: Vec<&str> =
             intends.then_some(INTENDED_SPEED).into_iter().chain(quantities.iter().map(|q| q.name)).collect();
-        let hint = suggestion(name, names.iter().copied()).map(|near| format!("; did you mean `{near}`?"));
-        Err(Error::Usage(format!(
-            "--objective {name}: scene `{}` has no such number{} (there: {})",
-            scene.name,
-            hint.unwrap_or_default(),
-            names.join(", ")
-        )))
+        let message = format!("--objective {name}: scene `{}` has no such quantity", scene.name);
+        Err(unknown_name(message, name, &names))
     }
 
     /// Its name.

@@ -2,7 +2,7 @@
 
 use super::project_root;
 use crate::{Error, Result};
-use impactcheck_physics::scene::suggestion;
+use impactcheck_physics::scene::unknown_name;
 use std::path::{Path, PathBuf};
 
 /// The scene file a command line names: a path, or the name of a shipped scene with or
@@ -61,15 +61,10 @@ fn resolve_in(folder: &Path, argument: &str, path: PathBuf, beside: PathBuf) -> 
         return Ok(beside);
     }
     let shipped = scenes_in(folder).unwrap_or_default();
-    let names: Vec<String> =
-        shipped.iter().filter_map(|p| Some(p.file_stem()?.to_string_lossy().into_owned())).collect();
-    let hint = suggestion(argument.trim_end_matches(".toml"), names.iter().map(String::as_str));
-    let hint = hint.map(|s| format!("; did you mean `{s}`?")).unwrap_or_default();
-    Err(Error::Usage(format!(
-        "there is no scene `{argument}`: neither a file nor a name in {}{hint} (there: {})",
-        folder.display(),
-        if names.is_empty() { "nothing".to_owned() } else { names.join(", ") },
-    )))
+    let names: Vec<&str> = shipped.iter().filter_map(|p| p.file_stem()?.to_str()).collect();
+    let message =
+        format!("there is no scene `{argument}`: neither a file nor a name in {}", folder.display());
+    Err(unknown_name(message, argument.trim_end_matches(".toml"), &names))
 }
 
 fn scenes_in(folder: &Path) -> Result<Vec<PathBuf>> {

@@ -97,9 +97,9 @@ fn find(candidates: &[PythonCandidate]) -> Result<PathBuf> {
         }
     }
     let faults = if faults.is_empty() { "no python3 was found".to_owned() } else { faults.join("; ") };
-    Err(Error::Solver(format!(
-        "the reference needs a Python that imports dolfinx, gmsh and meshio; {faults}; {INSTALL}, or name another interpreter in {PYTHON_VARIABLE}"
-    )))
+    let message = format!("the reference needs a Python that imports dolfinx, gmsh and meshio; {faults}");
+    let other = format!("to use another interpreter, name it in {PYTHON_VARIABLE}");
+    Err(Error::Solver(message).hint([INSTALL.to_owned(), other]))
 }
 
 /// All interpreters that [`python`] looks at, in its order, each with its reason if it does not run.

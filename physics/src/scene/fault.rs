@@ -1,5 +1,6 @@
 //! What is wrong with a scene file, with the place in the file and what would be valid.
 
+use crate::error::Error;
 use miette::{Diagnostic, NamedSource, SourceSpan};
 use std::ops::Range;
 use std::sync::Arc;
@@ -90,6 +91,13 @@ pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> O
     let score = |k: &str| strsim::damerau_levenshtein(&word.to_lowercase(), &k.to_lowercase());
     let best = known.into_iter().map(|k| (score(k), k)).min()?;
     (best.0 <= 1 + word.chars().count() / 4).then_some(best.1)
+}
+
+/// [`Error::Usage`] of a `name` that is none of `known`, as `message` says: the hints are a similar name, and all.
+pub fn unknown_name(message: String, name: &str, known: &[&str]) -> Error {
+    let similar = suggestion(name, known.iter().copied()).map(|near| format!("did you mean `{near}`?"));
+    let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+    Error::Usage(message).hint(similar).hint([format!("available: {known}")])
 }
 
 /// "did you mean `x`? " or nothing.

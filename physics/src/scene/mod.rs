@@ -29,8 +29,8 @@ mod uncertainty;
 pub(crate) mod values;
 
 pub use external::External;
-pub use fault::suggestion;
 pub use fault::{Fault, Faults, faults};
+pub use fault::{suggestion, unknown_name};
 pub use field::{Field, Rejected};
 pub use flight::{Flight, FlightSpring, Flyer, Vibration};
 pub(crate) use language::{Dialect, Grammar, Language};

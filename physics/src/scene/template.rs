@@ -9,7 +9,7 @@ use super::material;
 use super::read::Settings;
 use super::values::Node;
 use super::values::{Checked, Values};
-use super::{Distribution, Field, Grammar, Rejected, Scene, suggestion};
+use super::{Distribution, Field, Grammar, Rejected, Scene, unknown_name};
 use crate::{Error, Result};
 
 /// A checked scene file, open to variation.
@@ -66,13 +66,8 @@ impl Template {
             return Err(Error::Usage(format!("`{path}` changes no reduced model: {why}")));
         }
         let names: Vec<&str> = fields.iter().map(|field| field.path.as_str()).collect();
-        let hint = suggestion(path, names.iter().copied()).map(|s| format!("; did you mean `{s}`?"));
-        Err(Error::Usage(format!(
-            "scene `{}` has no numeric field `{path}`{} (there: {})",
-            self.scene.name,
-            hint.unwrap_or_default(),
-            names.join(", ")
-        )))
+        let message = format!("scene `{}` has no numeric field `{path}`", self.scene.name);
+        Err(unknown_name(message, path, &names))
     }
 
     /// Every numeric field that the scene has or may have and a reduced model knows.
@@ -262,7 +257,8 @@ mod tests {
             ("materials.steel.yield_strength", "without `hardening`"),
             ("reference.elements_per_contact_radius", "only the reference uses it"),
         ] {
-            let said = template.field(path).expect_err("refused").to_string();
+            let refused = template.field(path).expect_err("refused");
+            let said = format!("{refused} {}", refused.hints().join(" "));
             assert!(said.contains(part), "{said}");
         }
         let yielding = BASE.replace("density ", "yield_strength = 6e8\nhardening = 0\ndensity ");

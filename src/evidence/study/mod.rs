@@ -10,9 +10,9 @@ pub use kinds::*;
 pub use plot::{Axis, Only, Panel, figure};
 pub use write::{MOST_ROWS, csv, json, markdown, told, write};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::project::project_root;
-use crate::scene::{Model, Scene, suggestion};
+use crate::scene::{Model, Scene, unknown_name};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -104,10 +104,7 @@ fn of_project(name: &str) -> Result<Scene> {
 /// [`Error::Usage`] if there is none; it lists those there are.
 pub fn find(name: &str) -> Result<&'static Entry> {
     STUDIES.iter().find(|entry| entry.name == name).ok_or_else(|| {
-        let names = STUDIES.map(|entry| entry.name);
-        let hint =
-            suggestion(name, names).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
-        Error::Usage(format!("there is no study `{name}`{hint} (there: {})", names.join(", ")))
+        unknown_name(format!("there is no study `{name}`"), name, &STUDIES.map(|entry| entry.name))
     })
 }
 
@@ -248,7 +245,7 @@ mod tests {
 
     #[test]
     fn an_unknown_study_is_a_usage_error_that_names_the_nearest() {
-        let said = find("tabel2").expect_err("unknown").to_string();
-        assert!(said.contains("did you mean `table2`?"), "{said}");
+        let refused = find("tabel2").expect_err("unknown");
+        assert_eq!(refused.hints()[0], "did you mean `table2`?");
     }
 }

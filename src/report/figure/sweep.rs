@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::format::{prefixed, words};
 use crate::kinds;
 use crate::plot::{ChartPanel, ColourMap, Series, chart, colour_maps};
-use crate::scene::{Model, suggestion};
+use crate::scene::{Model, unknown_name};
 use crate::sweep::{Known, Plan, Record, Table};
 
 /// The paper's rule for the optimum (section 4.1), which results can be held against.
@@ -51,13 +51,7 @@ impl Drawn {
         let found = results().enumerate().find(|(_, (known, _))| *known == name);
         found.map(|(place, (name, unit))| Drawn { place, name, unit }).ok_or_else(|| {
             let names: Vec<&str> = results().map(|(known, _)| known).collect();
-            let hint =
-                suggestion(name, names.iter().copied()).map(|near| format!("; did you mean `{near}`?"));
-            Error::Usage(format!(
-                "--quantity {name}: a sweep has no such quantity{} (there: {})",
-                hint.unwrap_or_default(),
-                names.join(", ")
-            ))
+            unknown_name(format!("--quantity {name}: a sweep has no such quantity"), name, &names)
         })
     }
 
