@@ -86,6 +86,11 @@ pub(crate) fn with_unit(value: f64, to: Prefixed, digits: usize) -> String {
     }
 }
 
+/// `value` in its unit with a suitable prefix and so many significant `digits`.
+pub(crate) fn quantity(value: f64, unit: &str, digits: usize) -> String {
+    with_unit(value, prefixed(unit, value), digits)
+}
+
 /// A given value in its unit, with as many digits as it was given with.
 pub(crate) fn measure(value: f64, unit: &str) -> String {
     if value == 0.0 {

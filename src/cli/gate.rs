@@ -9,8 +9,8 @@ use crate::comparison::{GateRules, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::reference::Resolution;
+use crate::report::Report;
 use crate::report::github;
-use crate::report::{self, Report};
 use crate::scene::Scene;
 use clap::Args;
 use std::io::Write;
@@ -249,8 +249,7 @@ fn acceptable(comparison: &SceneComparison) -> Result<()> {
         None => Ok(()),
         Some(check) => Err(Error::Usage(format!(
             "--update: scene `{}` has a result that contradicts itself, which no reason makes right: {}; nothing was changed",
-            comparison.scene,
-            report::check_failure(check)
+            comparison.scene, check
         ))),
     }
 }

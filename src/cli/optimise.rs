@@ -5,7 +5,7 @@ use super::{Context, JsonArgument};
 use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::format::words;
+use crate::format::{measure, quantity, words};
 use crate::optimise::{Confirmation, Objective, Optimum, Problem, Robust, Variable, Watch, confirm};
 use crate::reference::{self, Resolution, Stored, Wish};
 use crate::report;
@@ -237,10 +237,10 @@ fn table(document: &OptimumDocument) -> String {
         ));
     }
     for variable in &optimum.variables {
-        let unit = if variable.unit == "1" { "" } else { variable.unit };
-        let [low, high] = variable.range_within_1_percent;
-        lines.push(format!("  {} = {:e} {unit}", variable.field, variable.optimum));
-        lines.push(format!("    within 1 % of the best from {low:.4e} to {high:.4e} {unit}"));
+        let unit = variable.unit;
+        let [low, high] = variable.range_within_1_percent.map(|value| quantity(value, unit, 4));
+        lines.push(format!("  {} = {}", variable.field, measure(variable.optimum, unit)));
+        lines.push(format!("    within 1 % of the best from {low} to {high}"));
         if let Some(curvature) = variable.curvature {
             lines.push(format!(
                 "    second derivative of the {} {curvature:.3e} per ({unit})^2",
@@ -274,10 +274,12 @@ fn confirmed(optimum: &Optimum, confirmation: &Confirmation) -> String {
     let own = format!("  model C there: efficiency {there:.5} ({off:+.1} %)");
     match &confirmation.rival {
         Some(rival) if !confirmation.confirmed => {
-            let unit = if rival.unit == "1" { "" } else { rival.unit };
             format!(
-                "{own}, and {:.5} at {} = {:.4e} {unit}: the optimum of model {} is not confirmed; search with --model C",
-                rival.efficiency, rival.field, rival.value, optimum.model
+                "{own}, and {:.5} at {} = {}: the optimum of model {} is not confirmed; search with --model C",
+                rival.efficiency,
+                rival.field,
+                quantity(rival.value, rival.unit, 4),
+                optimum.model
             )
         }
         Some(rival) => format!("{own}; the best of other peaks and bounds is {:.5}", rival.efficiency),

@@ -4,6 +4,7 @@ use super::progress::Counter;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
+use crate::format::measure;
 use crate::report;
 use crate::report::{Drawn, FigureFile, figure_format, sweep_figure};
 use crate::sweep::{self, Plan, Shard, Table};
@@ -189,7 +190,7 @@ fn finish(
             plan.model(record.index)
         );
         for (name, number, unit) in table.place(record) {
-            text += &format!("\n  {name} = {number:.6e}{}{unit}", if unit.is_empty() { "" } else { " " });
+            text += &format!("\n  {name} = {}", measure(number, unit));
         }
     }
     super::print(&text)?;

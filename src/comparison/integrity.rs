@@ -7,13 +7,14 @@ use super::discrepancy::Discrepancy;
 use super::impacts;
 use super::series;
 use super::verdict::Verdict;
+use crate::format::{measure, quantity, words};
 use crate::kinds::{self, Kind};
 use crate::result::{Curve, History, Outcome, Source, Statement, Summary};
 use crate::scene::{Scene, Tolerances};
 use serde::Serialize;
 
 /// The check that a program which failed does not pass.
-pub const NO_RESULT: &str = "no_result";
+const NO_RESULT: &str = "no_result";
 
 /// A statement about one result that must hold whatever the tolerances are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -34,8 +35,17 @@ pub struct Check {
 
 impl std::fmt::Display for Check {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.check == NO_RESULT {
+            return write!(f, "there is no result to compare");
+        }
         let Check { check, unit, found, expected, bound, .. } = self;
-        write!(f, "{check}: {found:.6e} instead of {expected:.6e} {unit} (± {bound:.1e})")
+        let [found, expected] = [found, expected].map(|value| measure(*value, unit));
+        let [difference, bound] = [self.found - self.expected, *bound].map(|value| quantity(value, unit, 2));
+        write!(
+            f,
+            "{}: found {found}, expected {expected}; difference {difference}, allowed ±{bound}",
+            words(check)
+        )
     }
 }
 

@@ -29,7 +29,7 @@ pub use discrepancy::{BandVerdict, Discrepancy};
 pub use impacts::value_in;
 pub use imported::import;
 pub use input::{ComparisonInput, compare_scene};
-pub use integrity::{Check, NO_RESULT, contradictions};
+pub use integrity::{Check, contradictions};
 pub use kinds::budget;
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
 pub use reference_check::{ReferenceCheck, ReferenceRow};

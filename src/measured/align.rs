@@ -9,6 +9,7 @@ use super::record::{Channel, Record};
 use super::screen::screened;
 use super::structure::Disturbance;
 use crate::error::{Error, Result};
+use crate::format::quantity;
 use crate::kinds::Approach;
 use crate::result::Summary;
 use serde::Serialize;
@@ -269,12 +270,12 @@ impl Alignment<'_> {
             let early = samples().take_while(|(t, _)| *t < 0.0).count();
             return Err(Error::Scene(miette::miette!(
                 help = "record from before the first contact, at least some periods of the bandwidth",
-                "{}: {} has {early} samples before the first contact, {} of them earlier than {:.3e} s before it, as far as the bandwidth of {:.3e} Hz smears the impact; at least {FEWEST} are needed there for its offset",
+                "{}: {} has {early} samples before the first contact, {} of them earlier than {} before it, as far as the bandwidth of {} smears the impact; at least {FEWEST} are needed there for its offset",
                 self.record.file.display(),
                 channel.quantity,
                 before.len(),
-                -start,
-                self.bandwidth
+                quantity(-start, "s", 3),
+                quantity(self.bandwidth, "Hz", 3)
             )));
         }
         if after.len() < FEWEST {

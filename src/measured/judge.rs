@@ -6,6 +6,7 @@ use super::flight::{FlightErrors, FreeFlight, FreeFlightFit};
 use super::noise::NORMAL_95;
 use super::structure::{Disturbance, Hum};
 use crate::error::{Error, Result};
+use crate::format;
 use crate::kinds::Approach;
 
 /// Standard errors from which on a drift counts as found, and what it makes up over the record, over the step of the impact.
@@ -132,16 +133,18 @@ impl Alignment<'_> {
                 (FindingKind::EndStop, "is stopped or returned")
             };
             let effect = format!(
-                "{quantity}: the body {what} {time:.3e} s after the first contact, where its velocity changes by {change:.3} m/s; {rest}"
+                "{quantity}: the body {what} {} after the first contact, where its velocity changes by {}; {rest}",
+                format::quantity(*time, "s", 3),
+                format::quantity(*change, "m/s", 3)
             );
             findings.push(Finding::new(kind, [time + shift, end], effect));
         }
         let unit = if seen.free.is_velocity { "m/s" } else { "m" };
         findings.extend(seen.hums.iter().map(|hum| {
             let effect = format!(
-                "{quantity}: a hum of {} Hz with an amplitude of {:.2e} {unit} is taken out; what its fit leaves enters the velocities",
+                "{quantity}: a hum of {} Hz with an amplitude of {} is taken out; what its fit leaves enters the velocities",
                 hum.frequency,
-                hum.parts[0].hypot(hum.parts[1])
+                format::quantity(hum.parts[0].hypot(hum.parts[1]), unit, 2)
             );
             Finding::new(FindingKind::Hum, self.whole(), effect)
         }));
@@ -149,11 +152,11 @@ impl Alignment<'_> {
             Disturbance::Event { .. } | Disturbance::Hum(_) => None,
             Disturbance::AcCoupled { time_constant } => Some((
                 FindingKind::AcCoupled,
-                format!("{quantity}: the signal decays with a time constant of {time_constant:.2e} s, as an AC-coupled sensor's does; its velocities and the efficiency from them are wrong"),
+                format!("{quantity}: the signal decays with a time constant of {}, as an AC-coupled sensor's does; its velocities and the efficiency from them are wrong", format::quantity(time_constant, "s", 2)),
             )),
             Disturbance::Curved { change } => Some((
                 FindingKind::Drift,
-                format!("{quantity}: the free flight is curved, its slope changes by {change:.3e} {unit}/s; a constant drift is taken out, the rest enters its velocities"),
+                format!("{quantity}: the free flight is curved, its slope changes by {} {unit}/s; a constant drift is taken out, the rest enters its velocities", format::significant(change, 3)),
             )),
         });
         findings.extend(of_disturbance.map(|(kind, effect)| Finding::new(kind, self.whole(), effect)));
@@ -229,9 +232,9 @@ impl Alignment<'_> {
             let delay = found - own[0].0;
             (explained && delay.abs() > DELAY * period).then(|| {
                 let effect = format!(
-                    "{} is {:.2e} s {} relative to {}; one shift for both fits neither, the time of the first contact is wrong by a part of that",
+                    "{} is {} {} relative to {}; one shift for both fits neither, the time of the first contact is wrong by a part of that",
                     seen.correction.quantity,
-                    delay.abs(),
+                    format::quantity(delay.abs(), "s", 2),
                     if delay > 0.0 { "late" } else { "early" },
                     self.record.channels[0].quantity
                 );

@@ -2,6 +2,7 @@
 
 use super::finding::{Finding, FindingKind};
 use super::record::{Channel, Record};
+use crate::format::{quantity, short};
 use std::ops::Range;
 
 /// Fewest equal samples at an end of a signal with noise that count as padding, and of zeros of all signals.
@@ -51,8 +52,8 @@ pub(super) fn screened(record: &Record, bandwidth: f64) -> (Record, Vec<Finding>
     let longest = gap(&record.time, bandwidth);
     findings.extend(record.time.windows(2).filter(|pair| pair[1] - pair[0] > longest).map(|pair| {
         let effect = format!(
-            "no samples for {:.3e} s: what happened there is not seen, a change of the velocities within it is taken for the impact",
-            pair[1] - pair[0]
+            "no samples for {}: what happened there is not seen, a change of the velocities within it is taken for the impact",
+            quantity(pair[1] - pair[0], "s", 3)
         );
         Finding::new(FindingKind::Gap, [pair[0], pair[1]], effect)
     }));
@@ -133,9 +134,10 @@ fn clipped(time: &[f64], channel: &Channel) -> Option<Finding> {
         }
         let Range { start, end } = at_limit[0]..at_limit[at_limit.len() - 1];
         let effect = format!(
-            "{}: {} samples have its extreme value of {limit:.4e}: the range of the instrument was exceeded, and offset, velocities and time of the first contact from this signal are wrong",
+            "{}: {} samples have its extreme value of {}: the range of the instrument was exceeded, and offset, velocities and time of the first contact from this signal are wrong",
             channel.quantity,
-            at_limit.len()
+            at_limit.len(),
+            short(limit)
         );
         Some(Finding::new(FindingKind::Clipped, [time[start], time[end]], effect))
     })

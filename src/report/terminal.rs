@@ -5,7 +5,7 @@ use crate::format::significant;
 use crate::report::conclusion::{HOLD, assumptions, conclusion, summaries};
 use crate::report::page::section::{measured, validation};
 use crate::report::summary_column::SummaryColumn;
-use crate::report::{Report, check_failure, kinds, row_told};
+use crate::report::{Report, kinds, row_told};
 use crate::result::{Limit, Outcome, Summary};
 use crate::scene::Scene;
 use anstyle::{AnsiColor, Style};
@@ -49,7 +49,7 @@ pub(crate) fn findings(comparison: &SceneComparison) -> String {
         line(&warning, shared);
     }
     for check in comparison.integrity.iter().filter(|c| c.verdict.failed()) {
-        line("reference", check_failure(check));
+        line("reference", check.to_string());
     }
     for (record, effect) in comparison.measured.iter().flat_map(measured::effects) {
         line(&format!("{warning}: {record}"), effect.to_owned());
@@ -59,7 +59,7 @@ pub(crate) fn findings(comparison: &SceneComparison) -> String {
             line(&model.model, row_told(row));
         }
         for check in model.integrity.iter().filter(|c| c.verdict.failed()) {
-            line(&model.model, check_failure(check));
+            line(&model.model, check.to_string());
         }
     }
     let gated = comparison.gated_verdicts().count();

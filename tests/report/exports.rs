@@ -228,7 +228,7 @@ fn damaged_history_still_gives_a_report() {
     assert!(scene_page(&report.scenes[0]).contains("contradicts itself"));
     assert_eq!(document(&report)["verdict"], "fail");
     assert_eq!(curves_csv(&report.scenes[0]).unwrap().lines().count(), 1);
-    assert!(markdown(&report).contains("not_finite: found 1, expected 0 within 0"));
+    assert!(markdown(&report).contains("not finite: found 1, expected 0; difference 1, allowed ±0"));
 }
 
 #[test]

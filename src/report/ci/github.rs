@@ -6,7 +6,7 @@ use crate::comparison::{
     Verdict,
 };
 use crate::format::{model_name, percent, significant, words};
-use crate::report::{Report, SceneReport, check_failure, row_told};
+use crate::report::{Report, SceneReport, row_told};
 use std::path::Path;
 
 /// GitHub shows this many errors of a step, and as many warnings.
@@ -105,7 +105,7 @@ fn findings(comparison: &SceneComparison, rules: GateRules) -> Vec<GateFinding<'
     let broken = |of: &str, checks: &'_ [Check]| -> Vec<GateFinding<'_>> {
         let failed = checks.iter().filter(|c| c.verdict.failed());
         let finding = |check: &Check| {
-            let message = check_failure(check);
+            let message = check.to_string();
             GateFinding { verdict: check.verdict, of: of.to_owned(), message, model: None, row: None }
         };
         failed.map(finding).collect()

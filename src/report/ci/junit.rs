@@ -1,7 +1,7 @@
 //! JUnit XML for continuous integration: a suite per scene, a case per model and quantity, its figures as properties. What
 //! stops at the gate is a failure; what is not gated, or undecided and to be told, is skipped.
 
-use crate::comparison::{Check, Discrepancy, GateRules, NO_RESULT, SceneComparison, Undecided, Verdict};
+use crate::comparison::{Check, Discrepancy, GateRules, SceneComparison, Undecided, Verdict};
 use crate::error::{Error, Result};
 use crate::format::{percent, prefixed, with_unit};
 use crate::report::Report;
@@ -114,7 +114,7 @@ fn add_numbers(case: &mut TestCase, numbers: &[(&str, Option<f64>)]) {
 }
 
 fn integrity_case(scene: &str, source: &str, check: &Check) -> TestCase {
-    let failure = check.verdict.failed().then(|| integrity_failure(check));
+    let failure = check.verdict.failed().then(|| check.to_string());
     let mut case = named(scene, source, &format!("integrity.{}", check.check), failure);
     case.add_property(Property::new("unit", check.unit.as_str()));
     let numbers = [("found", check.found), ("expected", check.expected), ("bound", check.bound)];
@@ -156,20 +156,4 @@ pub(crate) fn told(row: &Discrepancy) -> String {
         }
         _ => bounded,
     }
-}
-
-/// `number` with the SI `unit`, if it has one.
-fn in_unit(number: String, unit: &str) -> String {
-    if unit == "1" { number } else { format!("{number} {unit}") }
-}
-
-/// What is wrong with a check, in one sentence with numbers, unit and bound.
-pub(crate) fn integrity_failure(check: &Check) -> String {
-    if check.check == NO_RESULT {
-        return "there is no result to compare".into();
-    }
-    // all digits: many of these bounds are a matter of rounding
-    let Check { check, unit, found, expected, bound, .. } = check;
-    let [found, expected, bound] = [found, expected, bound].map(|value| in_unit(value.to_string(), unit));
-    format!("{check}: found {found}, expected {expected} within {bound}")
 }

@@ -8,7 +8,7 @@ use crate::report::overview::{ModelOverview, Overview};
 use crate::report::page::section;
 use crate::report::page::validated_map::{self, ValidatedMap};
 use crate::report::standing::{self, Folder, Standing};
-use crate::report::{Report, SceneReport, check_failure, kinds};
+use crate::report::{Report, SceneReport, kinds};
 use std::cmp::Reverse;
 
 /// Most characters of the document: comments on GitHub hold 65 536, and what posts it may add a link.
@@ -222,7 +222,7 @@ fn failures(of: &str, checks: &[Check]) -> String {
     }
     let mut text = format!("\nThe result of {of} contradicts itself or its scene:\n\n");
     for check in failed {
-        text += &format!("- {}\n", check_failure(check));
+        text += &format!("- {}\n", check.to_string());
     }
     text
 }

@@ -3,7 +3,6 @@
 use crate::comparison::{BandVerdict, Check, Discrepancy, ModelComparison, Verdict};
 use crate::curves::CurveMetrics;
 use crate::format::{percent, prefixed, significant, with_unit, words};
-use crate::report::check_failure;
 use crate::report::page::html::{badge, named, number, scrolled};
 use crate::report::page::prose::prose;
 use crate::result::{ContactPatch, ContactPressure};
@@ -137,7 +136,7 @@ pub(crate) fn contradictions(source: &str, checks: &[Check]) -> Markup {
     html! {
         @if !failed.is_empty() {
             p { (badge(Verdict::Fail)) " The result of " (source) " contradicts itself or its scene:" }
-            ul { @for check in failed { li { (prose(&check_failure(check))) } } }
+            ul { @for check in failed { li { (prose(&check.to_string())) } } }
         }
     }
 }
