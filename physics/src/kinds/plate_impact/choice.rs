@@ -14,7 +14,7 @@
 //! has more of them where that finds too large an error. Of a thick plate the layer says little: model C alone is asked.
 
 use super::closed_form;
-use super::errors::COVERED;
+use super::errors::{COVERED, estimated_percent};
 use super::joined::Cut;
 use super::results::PlateQuantities;
 use super::trials::{HALF_SPACES, Lack, RUNGS, Trials};
@@ -347,16 +347,16 @@ impl<'a> ChoicePlan<'a> {
         let model = self.model;
         match (&self.refused, self.error, self.floor) {
             (Some(refused), Some(error), _) => format!(
-                "model C can't be set up ({refused}); model {model} with {} modes comes nearest with an estimated error of {:.2} %",
+                "model C can't be set up ({refused}); model {model} with {} modes comes nearest with an estimated error of {}",
                 self.modes,
-                100.0 * error
+                estimated_percent(*error)
             ),
             (_, Some(_), _) if self.closed_form => closed_form::REASON.to_owned(),
             (_, Some(_), _) if self.met() => {
                 let alone = self.hopeless.map_or(String::new(), |error| {
                     format!(
-                        "; Kirchhoff's plate has an estimated error of {:.2} % with any number of modes",
-                        100.0 * error
+                        "; Kirchhoff's plate has an estimated error of {} with any number of modes",
+                        estimated_percent(*error)
                     )
                 });
                 format!(
@@ -364,9 +364,9 @@ impl<'a> ChoicePlan<'a> {
                 )
             }
             (_, Some(error), Some(floor)) => format!(
-                "no reduced model is estimated to be within the tolerance: model {model} is nearest with {:.2} %, of which {:.2} % is the error found for model C",
-                100.0 * error,
-                100.0 * floor
+                "no reduced model is estimated to be within the tolerance: model {model} is nearest with {}, of which {} is the error found for model C",
+                estimated_percent(*error),
+                estimated_percent(*floor)
             ),
             (.., Some(_)) => format!(
                 "model {model} is taken without an estimate: with fewer modes its contacts have no solution"

@@ -34,3 +34,10 @@ pub fn error_scale(name: &str, exact: &PlateQuantities, speed: f64) -> f64 {
         _ => exact.get(name).map_or(f64::NAN, f64::abs),
     }
 }
+
+/// A relative error that is an estimate, in per cent with two digits.
+pub(super) fn estimated_percent(error: f64) -> String {
+    let percent = 100.0 * error;
+    let decimals = (1.0 - percent.abs().max(1e-3).log10().floor()).clamp(0.0, 4.0);
+    format!("{percent:.*} %", decimals as usize)
+}

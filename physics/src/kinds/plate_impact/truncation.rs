@@ -4,6 +4,7 @@
 //! with more modes ([`Trials`]), which knows bending far from the rim, and against itself with fewer modes, which knows the
 //! rest. A fluid's film and drag are omitted of both.
 
+use super::errors::estimated_percent;
 use super::joined::off_centre_system;
 use super::results::quantities;
 use super::trials::{HALF_SPACES, Lack, RUNGS, Trials};
@@ -160,7 +161,7 @@ fn warning(model: Model, modes: usize, lack: Lack, enough: Option<usize>) -> Str
     };
     let plural = if modes == 1 { "" } else { "s" };
     format!(
-        "model {model} with {modes} mode{plural}: modal truncation error about {:.2} %{most}; {remedy}",
-        100.0 * lack.error
+        "model {model} with {modes} mode{plural}: modal truncation error about {}{most}; {remedy}",
+        estimated_percent(lack.error)
     )
 }
