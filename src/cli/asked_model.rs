@@ -72,7 +72,7 @@ pub(super) fn within_bounds(error: f64, text: &str) -> std::result::Result<f64, 
 pub(super) fn told(choice: &Choice) -> String {
     let percent = |error: Option<f64>| error.map_or("unknown".to_owned(), |e| format!("{:.2} %", 100.0 * e));
     let mut lines = vec![format!(
-        "auto, tolerance {:.4} % of {}: estimated error {}, kept in at least {:.1} % of random scenes where it meets the tolerance",
+        "auto, tolerance {:.4} % of {}: estimated error {}; in {:.1} % of random test scenes the true error was within the tolerance",
         100.0 * choice.tolerance,
         choice.covers.join(", "),
         percent(choice.estimated_error),

@@ -59,7 +59,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
 
 fn table(found: &Calibration) -> String {
     let mut lines = vec![format!(
-        "{} (model {}): {} samples, misfit {:.2} % of their span, {:.2} % before",
+        "{} (model {}): {} samples, misfit {:.2} % of their span, {:.2} % before; ± is one standard deviation",
         found.scene,
         found.model,
         found.samples,

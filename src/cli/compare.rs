@@ -26,17 +26,18 @@ pub fn run(context: &Context, OwnArguments { shared, watch }: OwnArguments) -> R
         arguments.resolution = stored_references::only_stored(context, &arguments.scenes)?;
     }
     let arguments = &arguments;
-    if !watch {
-        return once(context, arguments);
-    }
-    let files = compare_inputs::files(&arguments.scenes)?.into_iter().chain(arguments.measured.clone());
-    super::watch::watch(&files.collect::<Vec<_>>(), || {
+    let compared = || {
         once(context, arguments).inspect_err(|error| {
-            if error.exit_status() == ExitStatus::Reference {
+            if error.exit_status() == ExitStatus::Reference && !arguments.json.json {
                 tell_alone(context, arguments);
             }
         })
-    })
+    };
+    if !watch {
+        return compared();
+    }
+    let files = compare_inputs::files(&arguments.scenes)?.into_iter().chain(arguments.measured.clone());
+    super::watch::watch(&files.collect::<Vec<_>>(), compared)
 }
 
 /// What the reduced models say without a reference, as far as they do.

@@ -58,7 +58,7 @@ struct Cli {
 }
 
 const AFTER_HELP: &str = "Every command has these options; `impactcheck COMMAND --help` shows its own.\n\nExit status: 0 pass, 1 internal error, 2 usage, 3 invalid scene, \
-10 a tolerance is exceeded, 11 reference missing, stale or damaged, 12 a solver failed.";
+10 a tolerance is exceeded (or undecided with --undecided fail), 11 reference missing, stale or damaged, 12 a solver failed.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

@@ -39,6 +39,11 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         return Err(Error::Usage(format!("--page {}: a page is a file that ends in .html", file.display())));
     }
     let (_, scene) = super::read_scene(&arguments.scene)?;
+    if let (None, Some(model)) = (arguments.asked.model, scene.reduced.model) {
+        context.note(format_args!(
+            "model {model} is the scene's choice (`reduced.model`); --model runs another"
+        ));
+    }
     let outcome = progress::watched(context, &scene.name, || {
         let curves = arguments.history.is_some() || arguments.page.is_some();
         kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default(), curves)

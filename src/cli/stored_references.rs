@@ -86,7 +86,7 @@ pub(super) fn tell_reused(context: &Context, stored: &Stored) {
 
 /// The command that makes a reference that can't be used one that can.
 fn advice(context: &Context, file: &Path, scene: &Scene, resolution: Resolution, lookup: &Lookup) -> String {
-    let is_shipped = scene::resolve(&scene.name).is_ok_and(|shipped| shipped == file);
+    let is_shipped = file.is_absolute() && scene::resolve(&scene.name).is_ok_and(|shipped| shipped == file);
     let named = if is_shipped { scene.name.clone() } else { file.display().to_string() };
     let store = context.store.as_ref().map_or(String::new(), |root| format!(" --store {}", root.display()));
     let command = |rest: &str| format!("`impactcheck{store} reference {rest}`");

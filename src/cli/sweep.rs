@@ -183,12 +183,12 @@ fn finish(
             "\n{open} impacts did not converge to the tolerance: their column `converged` is 0, and their contacts amplify every error"
         );
     }
-    if let Some((record, efficiency)) = table.best() {
-        text += &format!(
-            "\nhighest efficiency {efficiency:.4} at point {} (model {})",
-            record.index,
-            plan.model(record.index)
-        );
+    // the most accurate model first
+    let mut models = plan.models().to_vec();
+    models.sort_by(|a, b| b.cmp(a));
+    for model in models {
+        let Some((record, efficiency)) = table.best(model) else { continue };
+        text += &format!("\nmodel {model}: highest efficiency {efficiency:.4} at point {}", record.index);
         for (name, number, unit) in table.place(record) {
             text += &format!("\n  {name} = {}", measure(number, unit));
         }

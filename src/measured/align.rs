@@ -269,7 +269,7 @@ impl Alignment<'_> {
         if before.len() < FEWEST {
             let early = samples().take_while(|(t, _)| *t < 0.0).count();
             return Err(Error::Scene(miette::miette!(
-                help = "record from before the first contact, at least some periods of the bandwidth",
+                help = "record at least one period of the bandwidth and some samples more of free flight before the first contact",
                 "{}: {} has {early} samples before the first contact, {} of them earlier than {} before it, as far as the bandwidth of {} smears the impact; at least {FEWEST} are needed there for its offset",
                 self.record.file.display(),
                 channel.quantity,

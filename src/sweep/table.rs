@@ -5,6 +5,7 @@ use super::record::Record;
 use super::run::{Shard, read_all};
 use crate::error::{Error, Result};
 use crate::file::write_file;
+use crate::scene::Model;
 use crate::table_format::TableFormat;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -88,8 +89,9 @@ impl<'a> Table<'a> {
     }
 
     /// The point with the highest efficiency.
-    pub fn best(&self) -> Option<(&Record, f64)> {
-        let rated = self.records.iter().filter_map(|r| Some((r, self.plan.value(r, "efficiency")?)));
+    pub fn best(&self, model: Model) -> Option<(&Record, f64)> {
+        let own = self.records.iter().filter(|record| self.plan.model(record.index) == model);
+        let rated = own.filter_map(|r| Some((r, self.plan.value(r, "efficiency")?)));
         rated.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 

@@ -133,16 +133,18 @@ impl Limit {
         let theory = theories.iter().find(|theory| self.measure.ends_with(theory.measure))?;
         let measure = self.measure.replace("_over_", " / ").replace('_', " ");
         self.is_exceeded().then(|| {
-            let value = two_digits(self.value);
+            let value = beyond(self.value, self.bound);
             format!("{measure} is {value}, above its limit of {}: {}", self.bound, theory.beyond)
         })
     }
 }
 
-/// `value`, which is larger than a bound, with two significant digits.
-fn two_digits(value: f64) -> String {
-    let decimals = (1.0 - value.log10().floor()).clamp(0.0, 6.0);
-    format!("{value:.*}", decimals as usize)
+/// `value`, which is larger than `bound`, with two significant digits, or as many more as show that it is.
+fn beyond(value: f64, bound: f64) -> String {
+    let fewest = (1.0 - value.log10().floor()).clamp(0.0, 6.0) as usize;
+    let with = |decimals: usize| format!("{value:.decimals$}");
+    let shows = |text: &String| text.parse::<f64>().is_ok_and(|rounded| rounded > bound);
+    (fewest..fewest + 4).map(with).find(shows).unwrap_or_else(|| with(fewest + 4))
 }
 
 #[cfg(test)]
@@ -178,6 +180,8 @@ mod tests {
             told.starts_with("outer contact radius / tip radius is 0.25, above its limit of 0.2: "),
             "{told}"
         );
+        let barely = HERTZ.at("outer", 0.2004).warning().expect("beyond");
+        assert!(barely.contains("is 0.2004, above"), "{barely}");
         let unknown = Limit { measure: "x".into(), value: 2.0, bound: 1.0 };
         assert_eq!(unknown.warning(), None);
     }

@@ -349,14 +349,14 @@ impl<'a> ChoicePlan<'a> {
             (Some(refused), Some(error), _) => format!(
                 "model C can't be set up ({refused}); model {model} with {} modes comes nearest with an estimated error of {}",
                 self.modes,
-                estimated_percent(*error)
+                estimated_percent(error)
             ),
             (_, Some(_), _) if self.closed_form => closed_form::REASON.to_owned(),
             (_, Some(_), _) if self.met() => {
                 let alone = self.hopeless.map_or(String::new(), |error| {
                     format!(
                         "; Kirchhoff's plate has an estimated error of {} with any number of modes",
-                        estimated_percent(*error)
+                        estimated_percent(error)
                     )
                 });
                 format!(
@@ -365,8 +365,8 @@ impl<'a> ChoicePlan<'a> {
             }
             (_, Some(error), Some(floor)) => format!(
                 "no reduced model is estimated to be within the tolerance: model {model} is nearest with {}, of which {} is the error found for model C",
-                estimated_percent(*error),
-                estimated_percent(*floor)
+                estimated_percent(error),
+                estimated_percent(floor)
             ),
             (.., Some(_)) => format!(
                 "model {model} is taken without an estimate: with fewer modes its contacts have no solution"

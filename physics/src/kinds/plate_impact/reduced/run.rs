@@ -15,7 +15,7 @@ use crate::kinds::plate_impact::series::{Done, Impacts, SAMPLES_PER_CONTACT};
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
 use crate::kinds::{Kind as _, SeriesModel};
-use crate::result::{self, BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary, Table};
+use crate::result::{self, BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary, Table, limit};
 use crate::scene::{self, Shape};
 use std::time::Instant;
 
@@ -70,6 +70,7 @@ impl Reduced {
         summary.warnings.extend(warnings);
         let elastic_efficiency = self.impacts().elastic_efficiency(&options);
         let elastic_limit = self.elastic_limit(&options)?;
+        summary.warnings.extend(self.yields_by_bending(elastic_limit, &last)?);
         Ok((Summary { impacts, elastic_efficiency, elastic_limit, ..summary }, memory, last.converged))
     }
 
@@ -87,6 +88,27 @@ impl Reduced {
         Ok(OnsetOfYield::new(materials, Bending::new(&setup.plate), &self.system)
             .filter(|_| covered)
             .map(limit))
+    }
+
+    /// Contacts of an elastic model whose pressure alone would not yield, but does with the bending of the plate.
+    fn yields_by_bending(&self, limit: Option<ElasticLimit>, result: &Integration) -> Result<Vec<String>> {
+        let setup = self.scene.plate_impact()?;
+        let Some(limit) = limit.filter(|_| !setup.yields()) else { return Ok(Vec::new()) };
+        let plate = &setup.plate.material;
+        let bodies =
+            [("outer", limit.outer, &setup.outer.material), ("inner", limit.inner, &setup.inner.material)];
+        let contacts = bodies.into_iter().zip(&self.system.laws).zip(&result.contacts);
+        let warnings = contacts.filter_map(|(((body, speed, material), law), contact)| {
+            let speed = speed.filter(|speed| *speed < self.system.speed)?;
+            let by_pressure = limit::of_contact(body, law, contact.force_peak, &[material, plate])
+                .any(|limit| limit.is_of_yield() && limit.is_exceeded());
+            (!by_pressure).then(|| {
+                format!(
+                    "the {body} contact yields from an impact speed of {speed:.3} m/s on, where the bending of the plate adds to its stress, but the model is elastic; specify `hardening` of the material, or reduce the speed"
+                )
+            })
+        });
+        Ok(warnings.collect())
     }
 
     /// Runs the impact for its results alone, as a series of many needs them.
