@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_without_partner_is_told_as_such_and_a_feature_no_scene_has_is_empty() {
+    fn a_model_without_comparator_is_reported_and_a_feature_no_scene_has_is_empty() {
         let plain = scene(PLATE);
         let cases = [Model::B, Model::C].map(|model| Case { scene: &plain, model, finding: None });
         let found = coverage(&cases);

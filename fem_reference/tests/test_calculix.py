@@ -152,8 +152,8 @@ def test_the_momentum_of_a_free_plate_and_both_spheres_lasts(tmp_path: Path) -> 
         ({"reference__geometry": "solid"}, "reference.geometry is 'solid'"),
     ],
 )  # fmt: skip
-def test_what_the_deck_does_not_describe_is_refused(changes: dict[str, Any], told: str) -> None:
-    with pytest.raises(SceneError, match=re.escape(told)):
+def test_what_the_deck_does_not_describe_is_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError, match=re.escape(message)):
         require_supported(parse_scene(document(**changes)), Options(solver="calculix"))
 
 
@@ -185,11 +185,11 @@ def pretended(folder: Path, monkeypatch: pytest.MonkeyPatch, does: str) -> None:
     ],
 )
 def test_a_run_that_fails_says_why(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, does: str, told: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, does: str, message: str
 ) -> None:
     pretended(tmp_path, monkeypatch, does)
     assert program.version() == "2.20"
-    with pytest.raises(SolverError, match=told):
+    with pytest.raises(SolverError, match=message):
         program.run("", tmp_path / "job", lambda _: False)
 
 
@@ -202,7 +202,7 @@ def test_a_run_that_prints_no_more_is_ended(
         program.run("", tmp_path / "job", lambda _: False)
 
 
-def test_a_missing_or_old_program_is_told_of(
+def test_a_missing_or_old_program_is_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(program.VARIABLE, str(tmp_path / "nowhere"))

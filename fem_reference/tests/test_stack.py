@@ -78,7 +78,7 @@ def test_ledger_up_to_the_touch(drive: Supply | None) -> None:
     assert taken == pytest.approx(held + touch.heat, rel=1e-3)
 
 
-def test_a_plate_out_of_reach_is_told() -> None:
+def test_a_plate_out_of_reach_is_reported() -> None:
     body = StackBody(dataclasses.replace(STACK, gap=40e-6), 3)
     with pytest.raises(SceneError, match=r"outer\.gap is 4e-05 m"):
         _ = body.touch

@@ -33,7 +33,7 @@ static FILES: project::Embedded = impactcheck_embedded::files!();
 
 /// An error of the program as Python raises it.
 fn raised(error: Error) -> PyErr {
-    python::Error::new_err((in_process::told(&error), error.exit_status() as u8))
+    python::Error::new_err((in_process::in_words(&error), error.exit_status() as u8))
 }
 
 fn usage(error: impl ToString) -> PyErr {

@@ -216,7 +216,7 @@ def test_an_optimum_is_the_programs(tmp_path: Path) -> None:
     assert all(best is None or best <= optimum.objective + 1e-3 for _, best in heard)
 
 
-def test_an_optimum_tells_how_far_it_is_and_what_is_wrong() -> None:
+def test_an_optimum_reports_its_progress_and_errors() -> None:
     scene, heard = ic.Scene(TABLE_1), []
     over = {"plate.thickness": ("1 mm", "3 mm"), "plate.radius": ("25 mm", "40 mm")}
 
@@ -267,7 +267,7 @@ def test_errors_have_the_programs_sentence_and_status() -> None:
     assert caught.value.exit_status == 11
 
 
-def test_a_sweep_keeps_the_order_and_tells_its_first_error() -> None:
+def test_a_sweep_keeps_the_order_and_raises_its_first_error() -> None:
     radii = ("6 mm", "8 mm", "10 mm", "12 mm")
     scenes = [ic.Scene({**TABLE_1, "inner": {**SPHERE, "radius": r}}) for r in radii]
     together = [result.efficiency for result in ic.sweep(scenes, model="B")]

@@ -69,7 +69,7 @@ pub(super) fn within_bounds(error: f64, text: &str) -> std::result::Result<f64, 
 }
 
 /// What was chosen, from what, and why, in lines.
-pub(super) fn told(choice: &Choice) -> String {
+pub(super) fn choice_in_words(choice: &Choice) -> String {
     let percent = |error: Option<f64>| error.map_or("unknown".to_owned(), |e| format!("{:.2} %", 100.0 * e));
     let mut lines = vec![format!(
         "auto, tolerance {:.4} % of {}: estimated error {}, kept in at least {:.1} % of random scenes where it meets the tolerance",

@@ -33,18 +33,18 @@ pub fn run(context: &Context, OwnArguments { shared, watch }: OwnArguments) -> R
     super::watch::watch(&files.collect::<Vec<_>>(), || {
         once(context, arguments).inspect_err(|error| {
             if matches!(error, Error::Reference(_)) {
-                tell_alone(context, arguments);
+                print_without_reference(context, arguments);
             }
         })
     })
 }
 
 /// What the reduced models say without a reference, as far as they do.
-fn tell_alone(context: &Context, arguments: &Arguments) {
+fn print_without_reference(context: &Context, arguments: &Arguments) {
     for (_, scene) in compare_inputs::scenes(&arguments.scenes).unwrap_or_default() {
-        let told = kinds::of(&scene).alone(&scene, (&arguments.models[..], arguments.tolerance));
-        let told = told.and_then(|outcomes| super::print(&report::alone(&scene, &outcomes)));
-        if let Err(error) = told {
+        let printed = kinds::of(&scene).alone(&scene, (&arguments.models[..], arguments.tolerance));
+        let printed = printed.and_then(|outcomes| super::print(&report::alone(&scene, &outcomes)));
+        if let Err(error) = printed {
             context.note(super::describe(&error));
         }
     }

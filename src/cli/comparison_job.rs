@@ -6,7 +6,7 @@ use super::compare_inputs;
 use super::external;
 use super::scatter::scatter;
 use super::second_program;
-use super::stored_references::{look_up, tell_reused};
+use super::stored_references::{look_up, report_reused};
 use super::{Context, kinds, validated_scenes};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
@@ -115,7 +115,7 @@ impl<'a> Job<'a> {
     pub(super) fn results(&self, context: &Context) -> Result<Vec<Results>> {
         let references = look_up(context, self.resolution(), self.arguments.compute, &self.scenes)?;
         for stored in &references {
-            tell_reused(context, stored);
+            report_reused(context, stored);
         }
         let result = |((file, scene), stored): (&(PathBuf, Scene), Stored)| {
             let asked = (&self.arguments.models[..], self.arguments.tolerance);

@@ -138,14 +138,14 @@ fn parsed<A: Args>(given: &[String]) -> Result<A> {
     let command = A::augment_args(clap::Command::new("impactcheck").no_binary_name(true));
     let found = command.try_get_matches_from(given).and_then(|found| A::from_arg_matches(&found));
     found.map_err(|e| {
-        let told = e.to_string();
-        let sentence = told.split("\n\n").next().unwrap_or_default();
+        let text = e.to_string();
+        let sentence = text.split("\n\n").next().unwrap_or_default();
         Error::Usage(sentence.strip_prefix("error: ").unwrap_or(sentence).to_owned())
     })
 }
 
 /// What the program says of an error, without its colours.
-pub fn told(error: &Error) -> String {
+pub fn in_words(error: &Error) -> String {
     let text = super::describe(error);
     anstream::adapter::strip_str(text.strip_prefix("error: ").unwrap_or(&text)).to_string().trim().to_owned()
 }

@@ -228,7 +228,7 @@ impl Discrepancy {
     }
 
     /// Whether people have to be told of the row: it fails or is undecided.
-    pub fn is_told(&self) -> bool {
+    pub fn is_reported(&self) -> bool {
         matches!(self.verdict, Verdict::Fail | Verdict::Undecided)
     }
 

@@ -21,7 +21,7 @@ mod write;
 pub use attachments::{Attachments, Cost};
 pub use ci::github;
 pub use ci::junit::junit;
-pub(crate) use ci::junit::{integrity_failure as check_failure, told as row_told};
+pub(crate) use ci::junit::{integrity_failure as check_failure, in_words as row_in_words};
 pub use ci::markdown::markdown;
 pub use export::{Export, FigureFile, curves_csv, figure_format, history_format, json};
 pub use figure::curves::curves_chart;

@@ -50,12 +50,12 @@ struct Growing<'a> {
 }
 
 impl Growing<'_> {
-    fn grow(&mut self, rows: usize, tell: &(dyn Fn(Progress) + Sync)) -> Result<()> {
+    fn grow(&mut self, rows: usize, on_progress: &(dyn Fn(Progress) + Sync)) -> Result<()> {
         self.plan.grow(self.inputs.sampled(rows, 0));
         match self.dir {
-            None => self.records.extend(in_memory(&self.plan, self.records.len(), tell)),
+            None => self.records.extend(in_memory(&self.plan, self.records.len(), on_progress)),
             Some(dir) => {
-                run(&self.plan, dir, Shard::WHOLE, tell)?;
+                run(&self.plan, dir, Shard::WHOLE, on_progress)?;
                 self.records = Table::join(&self.plan, dir, Shard::WHOLE)?.records().to_vec();
             }
         }
@@ -93,7 +93,7 @@ impl Growing<'_> {
 }
 
 /// Runs the study that `request` asks for of the scene file `file`, in memory or in a `folder`, where its impacts are logged, so that it goes on if it
-/// was interrupted, and become the table `samples`; `tell` hears of the progress.
+/// was interrupted, and become the table `samples`; `on_progress` hears of the progress.
 ///
 /// # Errors
 /// As [`uncertainty_of`]; [`Error::Usage`] for a number of rows that can't be, or a folder of another study; [`Error::Solver`] if the nominal
@@ -102,7 +102,7 @@ pub fn study(
     (file, template): (&Path, &Template),
     request: &Request,
     folder: Option<(&Path, TableFormat)>,
-    tell: &(dyn Fn(Progress) + Sync),
+    on_progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Scatter> {
     let scene = template.scene();
     let uncertainty = uncertainty_of(scene)?;
@@ -130,7 +130,7 @@ pub fn study(
     )?;
     let mut growing = Growing { plan, inputs, dir: folder.map(|(dir, _)| dir), records: Vec::new() };
     let mut rows = first;
-    growing.grow(rows, tell)?;
+    growing.grow(rows, on_progress)?;
     let reached = loop {
         let Samples::Until(accuracy) = request.samples else { break None };
         let reached = growing.accuracy(rows, &request.wanted);
@@ -138,7 +138,7 @@ pub fn study(
             break Some(reached <= accuracy);
         }
         rows *= 2;
-        growing.grow(rows, tell)?;
+        growing.grow(rows, on_progress)?;
     };
     let Growing { inputs, records, plan, .. } = &growing;
     if let Outcome::Invalid(reason) | Outcome::Failed(reason) = &records[0].outcome {

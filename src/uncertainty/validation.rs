@@ -221,14 +221,14 @@ mod tests {
     }
 
     #[test]
-    fn the_input_that_decides_is_told_with_how_well_it_has_to_be_known() {
-        let told = |error| {
+    fn the_input_that_decides_is_named_with_its_required_accuracy() {
+        let sentence = |error| {
             let found = Assessment::of(error, (None, None), &scatter()).expect("numbers");
             found.would_decide.expect("none shown")
         };
         // u_val has to fall to 0.02: thickness from 0.024 to sqrt(0.02^2 - 0.018^2) = 0.00872, 36 % of it
-        assert!(told(0.04).contains("`thickness` (64 % of u_val^2) known to 36 % of"), "{}", told(0.04));
-        assert!(told(0.02).contains("all inputs known better would"), "{}", told(0.02));
+        assert!(sentence(0.04).contains("`thickness` (64 % of u_val^2) known to 36 % of"), "{}", sentence(0.04));
+        assert!(sentence(0.02).contains("all inputs known better would"), "{}", sentence(0.02));
         let coarse = Assessment::of(0.02, (None, Some(0.03)), &scatter()).expect("numbers");
         assert!(coarse.would_decide.expect("none shown").starts_with("no input known better"));
     }

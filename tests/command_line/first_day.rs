@@ -89,7 +89,7 @@ fn a_reduced_model_alone_has_a_page() {
 }
 
 #[test]
-fn results_over_commits_that_are_not_there_are_told() {
+fn missing_results_over_commits_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let arguments =
         ["compare", "scaled-plate-r6.35", "--models", "A", "--trends", "none.jsonl", "--out", "report"];

@@ -156,7 +156,7 @@ fn a_measured_speed_widens_the_interval_of_the_efficiency() {
 }
 
 #[test]
-fn one_signal_is_enough_and_missing_free_flight_is_told() {
+fn one_signal_is_enough_and_missing_free_flight_is_reported() {
     let (scene, setup) = scene("scaled-plate-r10");
     let truth = model(&scene, Model::C);
     let expected = truth.summary.value("efficiency").unwrap();

@@ -227,7 +227,7 @@ fn beam_takes_part_in_the_impact() {
 
 /// Modes whose waves are no longer than the contact patches are wide add nothing, and take nothing away.
 #[test]
-fn more_modes_than_the_contact_patches_can_tell_apart_change_nothing() {
+fn more_modes_than_the_contact_patches_resolve_change_nothing() {
     let scene = Scene::read(std::path::Path::new("scenes/examples/rocker-bender.toml")).unwrap();
     let run = |modes| Reduced::new(&scene, Model::C, Some(modes)).unwrap().run(1e-6).unwrap();
     let few = run(16);

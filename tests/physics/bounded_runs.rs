@@ -91,9 +91,9 @@ fn a_squeeze_film_takes_a_share_of_the_energy_that_was_there() {
     ]);
     let summary = Reduced::new(&Scene::parse("film.toml", &film).unwrap(), Model::B, Some(4)).unwrap();
     let summary = summary.run(1e-4).unwrap();
-    let told =
+    let text =
         summary.warnings.iter().find_map(|w| w.strip_prefix("the squeeze film dissipates ")).expect("told");
-    let share: f64 = told.split(' ').next().unwrap().parse().unwrap();
+    let share: f64 = text.split(' ').next().unwrap().parse().unwrap();
     let mass = 4.0 / 3.0 * std::f64::consts::PI * 1.5e-3_f64.powi(3) * 7780.0;
     let all = 0.5 * mass * (0.05_f64.powi(2) + 0.5_f64.powi(2));
     assert_relative_eq!(share, 100.0 * summary.losses.unwrap().squeeze_film / all, max_relative = 0.01);
@@ -149,17 +149,17 @@ fn a_bender_bent_beyond_linear_theory_is_warned_of() {
     let limit = |speed: &str| {
         let summary = summary(&text.replace("300 mm/s", speed), Model::B);
         let limit = summary.limits.iter().find(|l| l.measure == "outer_tip_deflection_over_length");
-        let told = summary.warnings.iter().any(|w| w.contains("linear beam theory"));
+        let warned = summary.warnings.iter().any(|w| w.contains("linear beam theory"));
         let deflection = summary.bender.expect("a bender").drive.tip_deflection;
         assert_relative_eq!(limit.expect("a limit").value, deflection / 13.7e-3, max_relative = 1e-12);
-        (deflection / 13.7e-3, told)
+        (deflection / 13.7e-3, warned)
     };
-    let (little, told) = limit("300 mm/s");
-    assert!((0.005..0.02).contains(&little) && !told, "{little} {told}");
+    let (little, warned) = limit("300 mm/s");
+    assert!((0.005..0.02).contains(&little) && !warned, "{little} {warned}");
     // deflection and speed grow together
-    let (much, told) = limit("12 m/s");
+    let (much, warned) = limit("12 m/s");
     assert_relative_eq!(much, 40.0 * little, max_relative = 1e-9);
-    assert!(told);
+    assert!(warned);
 }
 
 const STACK: &str = r#"outer = { kind = "stack", length = "18 mm", area = "25 mm^2", stroke = "17.4 um", blocked_force = "850 N", voltage = "150 V", capacitance = "1.4 uF", density = "8000 kg/m^3", tip_radius = "4 mm", gap = "3 um", material = "steel""#;

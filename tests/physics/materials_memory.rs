@@ -177,18 +177,18 @@ fn a_polymer_plate_loses_two_points() {
 
 /// Far beyond the loads its law was found for a contact that yields is warned of, and then refused.
 #[test]
-fn a_yield_strength_far_below_the_pressure_is_told() {
+fn a_yield_strength_far_below_the_pressure_has_a_warning() {
     let memory = |strength: f64| {
         let setup = with(common::scaled_plate(0.01, 0.55), yielding(strength));
         let system = setup.rigid_system(&kirchhoff::modes(&setup.plate, 4).unwrap(), [0.0; 2]);
         setup.memory(&system)
     };
-    let told = |strength: f64| memory(strength).unwrap().unwrap().warnings.join("; ");
+    let warnings_of = |strength: f64| memory(strength).unwrap().unwrap().warnings.join("; ");
     assert!(
-        !told(600e6).contains("up to 110 times")
-            && told(1e8).contains("compared with finite elements up to 110 times"),
+        !warnings_of(600e6).contains("up to 110 times")
+            && warnings_of(1e8).contains("compared with finite elements up to 110 times"),
         "{}",
-        told(1e8)
+        warnings_of(1e8)
     );
     assert!(memory(1e6).unwrap_err().to_string().contains("yield_strength"));
 }
@@ -248,7 +248,7 @@ fn a_relaxing_plate_has_the_frequency_of_its_storage_modulus() {
 
 /// What the models do not cover is no scene, and what they leave open they say.
 #[test]
-fn what_is_not_covered_is_refused_and_what_is_open_is_told() {
+fn uncovered_materials_are_refused_and_open_questions_have_a_warning() {
     let plastic = "materials.b = { youngs_modulus = 210e9, poisson_ratio = 0.3, density = 7780, yield_strength = 6e8, hardening = 0 }";
     let relaxing = "materials.c = { youngs_modulus = 2e9, poisson_ratio = 0.3, density = 1000, relaxation = [{ ratio = 0.1, time = 1e-5 }] }";
     let fluid = "fluid = { viscosity = 1e-3, density = 1e3, minimum_gap = 1e-6 }";

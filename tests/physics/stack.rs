@@ -185,7 +185,7 @@ fn a_stack_that_presses_on_leaves_its_own_end_open() {
 }
 
 #[test]
-fn a_stack_that_does_not_come_to_the_plate_is_told() {
+fn a_stack_that_does_not_reach_the_plate_is_reported() {
     let far = stack(34e-6, Some(Supply { resistance: 50.0, buffer_capacitance: None }));
     let said = MovingBody::outer(&setup(far).outer).unwrap_err().to_string();
     assert!(said.contains("`outer.gap` is 0.000034 m") && said.contains("never reaches"), "{said}");

@@ -292,7 +292,7 @@ fn what_a_seal_seat_has_not_is_refused_in_one_sentence() {
 }
 
 #[test]
-fn the_mesh_of_another_design_is_refused_and_one_that_does_not_tell_is_warned_of() {
+fn the_mesh_of_another_design_is_refused_and_one_without_geometry_has_a_warning() {
     let folder = tempfile::tempdir().expect("folder");
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     // as another program would pass it on: without the description beside it
@@ -303,17 +303,17 @@ fn the_mesh_of_another_design_is_refused_and_one_that_does_not_tell_is_warned_of
     let (status, output, error) = impactcheck(&arguments, folder.path());
     assert_eq!((status, output.as_str()), (12, ""), "{error}");
     assert!(error.contains("not one of this seat: it was made for another geometry"), "{error}");
-    let told = |mesh: &SeatMesh| {
+    let is_warned = |mesh: &SeatMesh| {
         let model = SeatModel::new(&scene(), Model::C, Some(4), mesh, &Cache::off()).expect("model");
         model.run(1e-2).expect("run").warnings.join(" ")
     };
-    assert!(told(&super::reduced::mesh()).contains("has no record of its geometry"));
+    assert!(is_warned(&super::reduced::mesh()).contains("has no record of its geometry"));
     let text = std::fs::read_to_string(super::reduced::mesh().path()).expect("mesh");
     let hash = scene().seal_seat().expect("seat").geometry_hash();
     let own = folder.path().join("own.vtu");
     let noted = text.replacen('\n', &format!("\n<!--geometry_hash {hash}-->\n"), 1);
     std::fs::write(&own, noted).expect("written");
-    assert!(!told(&SeatMesh::open(&own).expect("mesh")).contains("geometry"));
+    assert!(!is_warned(&SeatMesh::open(&own).expect("mesh")).contains("geometry"));
 }
 
 /// A stand-in for the mesher, which waits for the second process before it writes a copy of the fixture's mesh.

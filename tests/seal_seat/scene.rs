@@ -92,7 +92,7 @@ fn the_ring_is_where_cone_and_sphere_touch() {
 }
 
 #[test]
-fn bounds_of_an_angle_are_told_in_the_unit_of_the_value() {
+fn bounds_of_an_angle_are_stated_in_the_unit_of_the_value() {
     for (value, said) in [
         ("\"-3 deg\"", "at least 0 deg and less than 90 deg"),
         ("\"2 rad\"", "at least 0 rad and less than 1.57"),

@@ -63,7 +63,7 @@ fn recipes_give_references_that_models_are_judged_by() {
 
 /// A wrong sign, unit, column or offset contradicts the scene; nothing is stored.
 #[test]
-fn what_a_map_gets_wrong_is_told_and_nothing_is_stored() {
+fn faults_of_a_map_are_reported_and_nothing_is_stored() {
     let folder = tempfile::tempdir().expect("folder");
     let store = Store::open(Some(&folder.path().join("store")));
     let map = fs::read_to_string(recipe("abaqus.toml")).expect("map");

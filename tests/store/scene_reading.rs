@@ -318,7 +318,7 @@ fn shear_thinning_is_given_in_full_or_not_at_all() {
 }
 
 #[test]
-fn all_faults_are_told_at_once_in_the_order_of_the_file() {
+fn all_faults_are_reported_at_once_in_the_order_of_the_file() {
     let text = edited("\"33 mm\"", "-1").replace("\"550 mm/s\"", "nan").replace("modes", "mode");
     let lines: Vec<usize> = refused(&text).iter().map(|p| p.line).collect();
     assert_eq!(lines, [11, 20, 29]);

@@ -83,7 +83,7 @@ fn flat(error: &Error) -> String {
 const COPY: &str = "cp -r \"$here/prepared\" \"$out\"";
 
 #[test]
-fn a_solid_run_is_told_its_processes_and_where_its_states_are_kept() {
+fn a_solid_run_receives_its_processes_and_the_folder_of_its_states() {
     let bench = Bench::new();
     let mut scene = scene();
     scene.reference.geometry = impactcheck::scene::Geometry::Solid;

@@ -35,13 +35,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ledger_within_the_tolerance_says_nothing() {
+    fn a_balance_within_the_tolerance_has_no_warning() {
         assert_eq!(ledger_check(9e-8, 2e-15, 1e-7).unwrap(), None);
         assert_eq!(ledger_check(5e-10, 5e-10, 1e-12).unwrap(), None);
     }
 
     #[test]
-    fn a_ledger_beyond_the_tolerance_is_told_and_by_whom() {
+    fn a_balance_beyond_the_tolerance_has_a_warning_with_its_name() {
         for (energy, momentum, tolerance, name) in
             [(6e-3, 1e-15, 1e-3, "energy"), (1e-8, 3e-6, 1e-7, "momentum"), (2e-9, 0.0, 1e-12, "energy")]
         {
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ledger_far_beyond_it_or_without_a_number_is_no_result() {
+    fn a_balance_far_beyond_it_or_without_a_number_is_no_result() {
         for (energy, momentum, tolerance) in [
             (0.2, 0.0, 1e-3),
             (0.011, 0.0, 1e-7),

@@ -41,7 +41,7 @@ impl Ending {
     }
 
     /// Why the sphere is in no seat, or may not be, in a sentence.
-    pub fn told(&self) -> Option<String> {
+    pub fn reason(&self) -> Option<String> {
         let mm = |x: f64| format!("{:.3} mm", x * 1e3);
         match self {
             Ending::Seat(_) | Ending::Passed => None,

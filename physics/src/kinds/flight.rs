@@ -78,7 +78,7 @@ fn flown(scene: &Scene, launch: Launch, restitution: f64) -> Result<(FlightSumma
         least_speed: judged.least_speed,
         restitution,
         launch,
-        reason: ending.told(),
+        reason: ending.reason(),
     };
     Ok((summary, ending))
 }
@@ -86,7 +86,7 @@ fn flown(scene: &Scene, launch: Launch, restitution: f64) -> Result<(FlightSumma
 /// That a verdict hangs on more than is known.
 fn warning(ending: Ending, share: f64) -> Option<String> {
     if let Ending::Moves | Ending::Bounces = ending {
-        return ending.told();
+        return ending.reason();
     }
     (share > 0.0 && share < 1.0).then(|| {
         format!(

@@ -47,14 +47,14 @@ impl DrawingScale {
 
 /// The materials of a scene, each once.
 pub(crate) fn materials<'a>(of: impl IntoIterator<Item = &'a Material>) -> Vec<(String, String)> {
-    let mut told: Vec<(String, String)> = Vec::new();
+    let mut facts: Vec<(String, String)> = Vec::new();
     for material in of {
-        if told.iter().all(|(name, _)| *name != material.name) {
+        if facts.iter().all(|(name, _)| *name != material.name) {
             let yielding = material
                 .yield_strength
                 .map(|y| format!(", yield strength {}", measure(y, "Pa")))
                 .unwrap_or_default();
-            told.push((
+            facts.push((
                 material.name.clone(),
                 format!(
                     "E {}, ν {}, ρ {} kg/m³{yielding}",
@@ -65,5 +65,5 @@ pub(crate) fn materials<'a>(of: impl IntoIterator<Item = &'a Material>) -> Vec<(
             ));
         }
     }
-    told
+    facts
 }

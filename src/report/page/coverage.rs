@@ -24,7 +24,7 @@ pub(crate) fn of(coverage: &Coverage, standing: &[Standing]) -> String {
     let body = html! {
         h1 { "Coverage" }
         p { a href="index.html" { "All scenes" } }
-        p { (told(coverage)) }
+        p { (description(coverage)) }
         (scrolled("Coverage", &table(coverage, &pages)))
         p.soft.note {
             "Models A, B and C: the largest relative difference to finite elements or another program in any scene with the feature, and the "
@@ -37,7 +37,7 @@ pub(crate) fn of(coverage: &Coverage, standing: &[Standing]) -> String {
 }
 
 /// How many features have a partner, and which have none.
-fn told(coverage: &Coverage) -> String {
+fn description(coverage: &Coverage) -> String {
     let is_held = |feature: &&FeatureCoverage| feature.partners.iter().any(|p| p.partner.is_some());
     let (held, alone): (Vec<_>, Vec<_>) = coverage.features.iter().partition(is_held);
     let names: Vec<&str> = alone.iter().map(|feature| feature.feature).collect();
@@ -177,7 +177,7 @@ mod tests {
         assert!(of_model(&alone, "A").into_string().contains("not for it"));
         let coverage = Coverage { schema_version: 1, features: vec![held, alone] };
         assert_eq!(
-            told(&coverage),
+            description(&coverage),
             "2 features that a scene can have; 1 of them are compared with something independent; not: drag."
         );
         let page = of(&coverage, &[]);

@@ -55,7 +55,7 @@ fn table(name: &str, quantities: &[&str], comparison: &SceneComparison, axis: &S
             } }
             tbody { @for quantity in quantities { tr data-quantity=(quantity) {
                 th scope="row" { (named(quantity.trim_end_matches("_rms"))) }
-                td { svg height=(height) width="100%" role="img" aria-label=(told(quantity, comparison)) {
+                td { svg height=(height) width="100%" role="img" aria-label=(description(quantity, comparison)) {
                     (row(quantity, comparison, axis, id))
                 } }
             } } }
@@ -163,7 +163,7 @@ fn label(tick: f64) -> String {
 }
 
 /// The row in words.
-fn told(quantity: &str, comparison: &SceneComparison) -> String {
+fn description(quantity: &str, comparison: &SceneComparison) -> String {
     let of_model = |model: &ModelComparison| {
         let relative = model.discrepancy(quantity).and_then(|row| row.relative);
         format!("{} {}", model.model, percent(relative))

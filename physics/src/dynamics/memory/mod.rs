@@ -290,15 +290,15 @@ fn hardening_left_out(material: &Material, system: &System, hits: &[HertzImpact;
 fn overloaded(contacts: &[Contact; 2], hits: &[HertzImpact; 2]) -> Result<Option<String>> {
     let overload = |i: usize| contacts[i].overload(hits[i].approach_peak());
     let overload = overload(0).max(overload(1));
-    let told = format!(
+    let warning = format!(
         "a contact reaches about {overload:.0} times the approach at first yield; the law of plastic contacts was compared with finite elements up to {PROVEN_OVERLOAD} times"
     );
     if overload > MOST_OVERLOAD {
         return Err(Error::Solver(format!(
-            "reduced model: {told}, and it is refused beyond {MOST_OVERLOAD:.0}; is `yield_strength` in the right unit?"
+            "reduced model: {warning}, and it is refused beyond {MOST_OVERLOAD:.0}; is `yield_strength` in the right unit?"
         )));
     }
-    Ok((overload > PROVEN_OVERLOAD).then_some(told))
+    Ok((overload > PROVEN_OVERLOAD).then_some(warning))
 }
 
 /// Yield strength in Pa at the rate of plastic `strain` in 1/s, if the material yields.

@@ -309,14 +309,14 @@ fn every_restitution_ends() {
                 assert!(restitution > 0.9 || !unsure, "{restitution} {friction} {angle}: {flight:?}");
                 // nothing takes energy: nothing is certain
                 assert!(restitution < 1.0 || friction > 0.0 || unsure, "{angle}: {flight:?}");
-                assert_eq!(flight.ending.told().is_none(), flight.ending.seat() != Seat::None);
+                assert_eq!(flight.ending.reason().is_none(), flight.ending.seat() != Seat::None);
             }
         }
     }
 }
 
 #[test]
-fn a_sphere_that_nothing_holds_is_told() {
+fn a_sphere_that_nothing_supports_is_reported() {
     let setup = Setup { field: down(-G), ..valve(0.0, 0.5, 0.1) };
     let said = Landscape::new(&setup).expect_err("it falls up");
     assert!(said.contains("do not hold the sphere in the seat it starts from"), "{said}");

@@ -162,8 +162,8 @@ impl<'a> ChoicePlan<'a> {
             taken.estimated_error = self.error;
         }
         // only a layer with twice as many modes tells
-        let told = 2 * modes <= self.trials.waves.modes();
-        self.closed_form = self.met() && told && bending::modes(&setup.plate, modes + 1).len() > modes;
+        let is_known = 2 * modes <= self.trials.waves.modes();
+        self.closed_form = self.met() && is_known && bending::modes(&setup.plate, modes + 1).len() > modes;
         self.modes = modes;
         self.closed_form
     }

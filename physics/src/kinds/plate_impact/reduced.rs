@@ -196,15 +196,15 @@ mod tests {
 
     /// As the references found it: 6 % too low with 10 mPa s, half a percent in water.
     #[test]
-    fn a_film_that_is_too_strong_for_bodies_without_dents_is_told() {
+    fn a_film_too_strong_for_rigid_surfaces_has_a_warning() {
         let viscous = include_str!("../../../../scenes/validation/viscous-film.toml");
         let water = include_str!("../../../../scenes/validation/squeeze-film.toml");
-        for (text, told) in [(viscous, true), (water, false)] {
+        for (text, is_warned) in [(viscous, true), (water, false)] {
             let scene = Scene::parse("film.toml", text).unwrap();
             let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-4).unwrap();
             assert_eq!(
                 summary.warnings.iter().any(|w| w.contains("squeeze film dissipates")),
-                told,
+                is_warned,
                 "{summary:?}"
             );
         }

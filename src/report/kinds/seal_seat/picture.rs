@@ -181,7 +181,7 @@ pub(super) fn measures(scene: &SealSeat) -> Vec<(String, String)> {
     let tips: Vec<String> = actuator.tip_positions.iter().map(|x| length(*x)).collect();
     let notch =
         seat.notch.map(|n| format!("; notch {} wide, floor at z = {}", length(n.width), length(n.floor)));
-    let mut told = vec![
+    let mut facts = vec![
         (
             "sphere".to_owned(),
             format!(
@@ -226,8 +226,8 @@ pub(super) fn measures(scene: &SealSeat) -> Vec<(String, String)> {
             ),
         ),
     ];
-    told.extend(materials([&seat.material, &sphere.material]));
-    told
+    facts.extend(materials([&seat.material, &sphere.material]));
+    facts
 }
 
 #[cfg(test)]

@@ -151,13 +151,13 @@ fn landscape_picture(setup: &Setup, landscape: &Landscape, launch: &Launch) -> M
         .map(|(at, energy)| format!("{},{}", x2(x(*at)), x2(y(*energy))))
         .collect();
     let saddle = landscape.saddle;
-    let told = |energy: f64| with_unit(energy, prefixed("J", energy), 3);
+    let shown = |energy: f64| with_unit(energy, prefixed("J", energy), 3);
     let drawing = html! {
         polyline points=(points.join(" ")) fill="none" stroke="currentColor" stroke-width="1.5" {}
         line x1=(MARGIN) x2=(WIDTH - MARGIN) y1=(x2(y(kinetic))) y2=(x2(y(kinetic))) stroke="#009e73" stroke-dasharray="6 4" {}
-        text x=(WIDTH - MARGIN) y=(x2(y(kinetic) - 5.0)) text-anchor="end" { "launch " (told(kinetic)) }
+        text x=(WIDTH - MARGIN) y=(x2(y(kinetic) - 5.0)) text-anchor="end" { "launch " (shown(kinetic)) }
         circle cx=(x2(x(saddle.x))) cy=(x2(y(saddle.energy))) r="4" fill="#d55e00" {}
-        text x=(x2(x(saddle.x) + 8.0)) y=(x2(y(saddle.energy) - 6.0)) { "saddle " (told(saddle.energy)) }
+        text x=(x2(x(saddle.x) + 8.0)) y=(x2(y(saddle.energy) - 6.0)) { "saddle " (shown(saddle.energy)) }
     };
     Svg::new("Energy landscape", [WIDTH, LANDSCAPE], Theme::Inline).around(&drawing)
 }

@@ -75,7 +75,7 @@ fn correlations_are_of_two_inputs_of_the_table() {
 }
 
 #[test]
-fn what_is_no_distribution_is_told_with_its_place() {
+fn an_invalid_distribution_is_reported_with_its_place() {
     for (table, parts) in [
         (
             "\n\"plate.thicknes\" = \"1 %\"",
