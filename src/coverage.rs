@@ -211,7 +211,7 @@ mod tests {
 
     /// Closed forms are about a part, and shown where the feature is of that part.
     #[test]
-    fn closed_forms_stand_beside_the_features_they_are_about() {
+    fn closed_forms_are_listed_with_their_features() {
         let text = PLATE.replace("radius   = \"10 mm\"", "radius = \"9 mm\"");
         let free = scene(&text.replace("edge      = \"clamped\"", "edge = \"free\"\ndamping_ratio = 0.1"));
         let found = recorded(std::slice::from_ref(&free), &[]).expect("closed forms");

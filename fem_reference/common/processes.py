@@ -122,8 +122,8 @@ def _launch(processes: int) -> None:
     os.execve(command[0], command, environment)
 
 
-def threads_per_process(asked: int, comm: Any) -> int:
-    """Threads of this process: its share of those ``asked`` for on its machine, 0: of its cores."""
+def threads_per_process(requested: int, comm: Any) -> int:
+    """Threads of this process: its share of those ``requested`` for on its machine, 0: of its cores."""
     processes, there = 1, len(affinity())
     if comm.size > 1:
         from .fenicsx import on_this_machine
@@ -133,7 +133,7 @@ def threads_per_process(asked: int, comm: Any) -> int:
         # A launcher may have bound every process to cores of its own.
         there = len(frozenset().union(*here.allgather(affinity())))
         here.Free()
-    return max(1, int(asked or min(there, quota())) // processes)
+    return max(1, int(requested or min(there, quota())) // processes)
 
 
 def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> None:

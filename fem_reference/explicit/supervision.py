@@ -186,7 +186,7 @@ def _sampled(
         return [sample(samples, stride)]
     film = loop.problem.film
     if film is not None:
-        return _sampled_beside_film(loop, film, sample, samples, stride)
+        return _sampled_with_film(loop, film, sample, samples, stride)
     rows, part = [], max(1, round(duration / RELAXATION_LOOKS / (stride * loop.dt)))
     for first in range(0, samples, part):
         rows.append(sample(min(part, samples - first), stride))
@@ -194,7 +194,7 @@ def _sampled(
     return rows
 
 
-def _sampled_beside_film(
+def _sampled_with_film(
     loop: Loop, film: structures.Film, sample: Sample, samples: int, stride: int
 ) -> list[Floats]:
     """``samples`` rows; where the film pushes the ledger looks whenever all levels meet.

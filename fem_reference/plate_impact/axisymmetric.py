@@ -272,7 +272,7 @@ def compute(
     estimate = estimate_contact(scene)
     radii = (estimate.outer_radius, estimate.inner_radius) if like is None else like.radii
     reach = YIELDING_REACH if like is None else like.reach
-    asked = scene.elements_per_contact_radius * factor
+    requested = scene.elements_per_contact_radius * factor
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
         if like is None:
@@ -291,7 +291,7 @@ def compute(
             resolution = resolution_of(scene, mesh, run, estimate.duration)
             return Suitability(
                 resolution,
-                asked,
+                requested,
                 within_zones(mesh, run, 0.999),
                 motion.dents is None or not motion.dents.reach_the_edge(),
             )

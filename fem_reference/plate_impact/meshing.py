@@ -84,7 +84,7 @@ def mesh_settings(
             )
     of_spheres = refinement[0], refinement[2]
     # Elements wide enough for the waves take more elements around the contact, too.
-    around = max(1.0, *(asked / MOST_ALONG for asked in of_spheres))
+    around = max(1.0, *(requested / MOST_ALONG for requested in of_spheres))
     per_radius = scene.elements_per_contact_radius * factor * around
     # Along the plate four elements per thickness carry the waves: the incompatible modes bend. The
     # stress at a clamped rim's corners is singular and would make the plate too stiff by the

@@ -125,7 +125,7 @@ def impact(**changes: Any) -> Scene:
     return parse_scene(document(**{**bodies, **changes}))
 
 
-def test_what_a_bender_needs_is_asked_for() -> None:
+def test_a_bender_without_its_required_keys_is_refused() -> None:
     assert impact().outer.tip_radius == 4e-3
     for change, field in (
         ({"run__end_time": None}, "run.end_time"),

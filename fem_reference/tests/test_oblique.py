@@ -290,7 +290,7 @@ def modal_sum(scene: Scene, end: float) -> tuple[float, float]:
     return float(path.y[1, -1]), max(force(y) for y in path.y.T)
 
 
-def test_a_plate_struck_beside_its_centre_answers_as_the_sum_of_its_modes() -> None:
+def test_a_plate_struck_off_its_centre_is_the_sum_of_its_modes() -> None:
     end = 6e-5
     found = strike(
         oblique(

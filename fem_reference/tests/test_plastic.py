@@ -163,7 +163,7 @@ def test_energy_of_an_impact_that_yields_is_accounted_for() -> None:
 
 
 @pytest.mark.parametrize("change", [{"plate__damping_ratio": 0.04}, {"friction": 0.3}])
-def test_ledger_closes_with_yielding_beside_another_loss(change: dict[str, float]) -> None:
+def test_balance_closes_with_plasticity_and_another_loss(change: dict[str, float]) -> None:
     run, motion, _ = impact(1, **STEELS, **change, reference__elements_per_contact_radius=3)
     assert run.energy_residual < 1e-6
     assert run.momentum_residual < 1e-9

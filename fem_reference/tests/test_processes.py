@@ -116,7 +116,7 @@ def _imported(source: Path) -> set[str]:
     return {name.split(".")[0] for name in names}
 
 
-def test_versions_asks_for_everything_that_is_imported() -> None:
+def test_versions_cover_everything_that_is_imported() -> None:
     folder = ROOT / "fem_reference"
     # what ParaView runs, also beside a solution's fields, we do not import;
     # MuJoCo has an environment of its own

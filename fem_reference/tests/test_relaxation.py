@@ -169,12 +169,12 @@ def test_damping_and_relaxation_together() -> None:
     ],
     ids=["friction", "film", "viscous film", "drag, mass and damping"],
 )
-def test_ledger_closes_beside_another_loss(beside: dict[str, Any]) -> None:
+def test_balance_closes_with_another_loss(other_loss: dict[str, Any]) -> None:
     coarse: dict[str, Any] = {
         "reference__elements_per_contact_radius": 3,
         "run__end_time": 1e-4,
     }
-    scene = relaxing("outer", "plate", **beside, **coarse)
+    scene = relaxing("outer", "plate", **other_loss, **coarse)
     run = run_of(scene, end_time=1e-4, most_levels=1)
     assert run.losses is not None and run.losses.bodies is not None
     assert sum(run.losses.bodies) > 0.05 * run.initial_energy

@@ -98,8 +98,8 @@ def solve(tmp_path: Path) -> Callable[..., Convergent]:
         **options: Any,
     ) -> Convergent:
         method = Convergent(order, leads, revision, cut)
-        asked = Options(courant=0.5, checkpoint=tmp_path / "kept", **options)
-        solve_series(method.solver(), method.write, tmp_path / "out", 1.0, Alone(), asked)
+        requested = Options(courant=0.5, checkpoint=tmp_path / "kept", **options)
+        solve_series(method.solver(), method.write, tmp_path / "out", 1.0, Alone(), requested)
         return method
 
     return solve
@@ -154,8 +154,8 @@ def test_what_passes_on_little_of_the_impact_needs_not_be_known_to_more_digits()
     meshes = [MeshResult(0.8**k, row, np.zeros(1), np.zeros(1), {}) for k, row in enumerate(values)]
     band = series.estimates(meshes)["minor"].band
     alone = series.relative_error(meshes, (Target("minor"),))
-    beside = series.relative_error(meshes, (Target("minor", small=0.05, of="force"),))
-    assert (alone, beside) == pytest.approx((band, band / 5.0))
+    with_minor = series.relative_error(meshes, (Target("minor", small=0.05, of="force"),))
+    assert (alone, with_minor) == pytest.approx((band, band / 5.0))
     assert Target("minor", small=0.005, of="force").scale(values[0]) == 1.0
 
 

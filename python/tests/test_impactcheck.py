@@ -105,7 +105,7 @@ def test_scenes_are_copied_and_pickled(tmp_path: Path) -> None:
     assert caught.value.exit_status == 3
 
 
-def test_models_beside_the_reference() -> None:
+def test_models_are_compared_with_the_reference() -> None:
     comparison = ic.compare(ic.Scene.read("scaled-plate-r10"))
     assert comparison.verdict == "pass"
     rows = {row["quantity"]: row for row in comparison.discrepancies("B")}
@@ -172,7 +172,7 @@ def record(file: Path, seed: int) -> Path:
     return file
 
 
-def test_measured_records_beside_the_models(tmp_path: Path) -> None:
+def test_measured_records_are_compared_with_the_models(tmp_path: Path) -> None:
     scene = ic.Scene.read("scaled-plate-r10")
     records = [record(tmp_path / f"run{seed}.csv", seed) for seed in (1, 2)]
     comparison = ic.compare(scene, models=["B", "C"], measured=records, bandwidth="150 kHz")

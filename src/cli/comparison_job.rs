@@ -1,6 +1,6 @@
 //! A comparison from scenes to the report: what `compare` and `gate` do alike.
 
-use super::asked_model::AskedModel;
+use super::requested_model::RequestedModel;
 use super::compare_arguments::Arguments;
 use super::compare_inputs;
 use super::external;
@@ -68,7 +68,7 @@ impl<'a> Job<'a> {
     pub(super) fn of(arguments: &'a Arguments, scenes: Vec<(PathBuf, Scene)>) -> Result<Self> {
         let start = Instant::now();
         compare_inputs::named_apart(&scenes)?;
-        if let (Some(tolerance), false) = (arguments.tolerance, arguments.models.contains(&AskedModel::Auto))
+        if let (Some(tolerance), false) = (arguments.tolerance, arguments.models.contains(&RequestedModel::Auto))
         {
             return Err(Error::Usage(format!(
                 "--tolerance {tolerance} is for the model auto, which is not among --models"
@@ -80,15 +80,15 @@ impl<'a> Job<'a> {
         if let Some((_, scene)) =
             scenes.iter().find(|(_, scene)| !kinds::has_one_of(scene, &arguments.models))
         {
-            let names: Vec<String> = arguments.models.iter().map(AskedModel::to_string).collect();
+            let names: Vec<String> = arguments.models.iter().map(RequestedModel::to_string).collect();
             return Err(Error::Usage(format!(
                 "--models {}: {}",
                 names.join(","),
                 crate::kinds::models_only(scene)
             )));
         }
-        if arguments.models.contains(&AskedModel::External) {
-            arguments.permission.ask(&scenes)?;
+        if arguments.models.contains(&RequestedModel::External) {
+            arguments.permission.require(&scenes)?;
         }
         let records = compare_inputs::records(&arguments.measured, &scenes)?;
         let figures = compare_inputs::figures(arguments.figure.as_ref(), &scenes)?;
@@ -118,10 +118,10 @@ impl<'a> Job<'a> {
             report_reused(context, stored);
         }
         let result = |((file, scene), stored): (&(PathBuf, Scene), Stored)| {
-            let asked = (&self.arguments.models[..], self.arguments.tolerance);
+            let request = (&self.arguments.models[..], self.arguments.tolerance);
             let models = kinds::of(scene);
-            let (mut reduced, cost) = models.beside(context, scene, &stored, asked)?;
-            if self.arguments.models.contains(&AskedModel::External) {
+            let (mut reduced, cost) = models.with_reference(context, scene, &stored, request)?;
+            if self.arguments.models.contains(&RequestedModel::External) {
                 reduced.extend(external::results(
                     context,
                     file,
@@ -130,7 +130,7 @@ impl<'a> Job<'a> {
                 ));
             }
             let coarser = self.coarser(context, file, scene).map(|stored| -> Result<_> {
-                let (reduced, _) = models.beside(context, scene, &stored, asked)?;
+                let (reduced, _) = models.with_reference(context, scene, &stored, request)?;
                 Ok((stored, reduced))
             });
             let other = second_program::independent(context, file, scene, self.arguments)?;
@@ -242,7 +242,7 @@ impl<'a> Job<'a> {
         let place = self.scenes.iter().position(|(_, other)| other.name == scene.name);
         let named = place.and_then(|k| scenes.get(k)).unwrap_or(&scene.name);
         let mut command = format!("impactcheck compare {named}");
-        let models: Vec<String> = models.iter().map(AskedModel::to_string).collect();
+        let models: Vec<String> = models.iter().map(RequestedModel::to_string).collect();
         if models != ["A", "B", "C", "external"] {
             command += &format!(" --models {}", models.join(","));
         }

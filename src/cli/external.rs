@@ -32,7 +32,7 @@ impl Permission {
     ///
     /// # Errors
     /// [`Error::Usage`] with the first program.
-    pub(super) fn ask(self, scenes: &[(PathBuf, Scene)]) -> Result<()> {
+    pub(super) fn require(self, scenes: &[(PathBuf, Scene)]) -> Result<()> {
         if self.is_given() {
             return Ok(());
         }

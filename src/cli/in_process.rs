@@ -1,10 +1,10 @@
 //! What the commands compute, for programs that hold scenes in memory, as the Python package does: the same models, defaults,
 //! bounds and sentences; nothing is printed.
 
-pub use super::asked_model::AskedModel;
-pub use super::asked_model::ModelRequest;
+pub use super::requested_model::RequestedModel;
+pub use super::requested_model::ModelRequest;
 
-use super::asked_model::within_bounds;
+use super::requested_model::within_bounds;
 use super::compare_arguments::Arguments;
 use super::comparison_job::Job;
 use super::optimise::{self, Solved};
@@ -27,11 +27,11 @@ const QUIET: Context = Context { store: None, quiet: true, verbose: false };
 ///
 /// # Errors
 /// Those of the command.
-pub fn reduced(scene: &Scene, asked: &ModelRequest, bodies: &SharedBodies) -> Result<Outcome> {
-    if let Some(tolerance) = asked.tolerance {
+pub fn reduced(scene: &Scene, request: &ModelRequest, bodies: &SharedBodies) -> Result<Outcome> {
+    if let Some(tolerance) = request.tolerance {
         within_bounds(tolerance, &format!("tolerance {tolerance}")).map_err(Error::Usage)?;
     }
-    kinds::of(scene).reduced(&QUIET, scene, asked, bodies, true)
+    kinds::of(scene).reduced(&QUIET, scene, request, bodies, true)
 }
 
 /// A scene and its file, which is empty if there is none.
@@ -50,7 +50,7 @@ pub fn reference(scene: Placed, resolution: Resolution, compute: bool) -> Result
 #[derive(Debug)]
 pub struct Comparing {
     /// The models.
-    pub models: Vec<AskedModel>,
+    pub models: Vec<RequestedModel>,
     /// The reference's.
     pub resolution: Resolution,
     /// Whether references that are missing are computed.
@@ -80,8 +80,8 @@ pub struct Compared {
 ///
 /// # Errors
 /// Those of the command.
-pub fn compare(scenes: Vec<Placed>, asked: Comparing) -> Result<Compared> {
-    let Comparing { models, resolution, compute, allow_external, out, measured, bandwidth, speed } = asked;
+pub fn compare(scenes: Vec<Placed>, request: Comparing) -> Result<Compared> {
+    let Comparing { models, resolution, compute, allow_external, out, measured, bandwidth, speed } = request;
     let is_written = out.is_some();
     let mut arguments: Arguments = parsed(&[])?;
     if let Some(bandwidth) = &bandwidth {

@@ -1,6 +1,6 @@
 //! The command line: one file per command, no physics.
 
-mod asked_model;
+mod requested_model;
 mod bench;
 mod calibrate;
 mod compare;

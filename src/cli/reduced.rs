@@ -1,6 +1,6 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
-use super::asked_model::{self, ModelRequest};
+use super::requested_model::{self, ModelRequest};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
@@ -16,7 +16,7 @@ pub struct Arguments {
     /// Scene file, name of a shipped scene, or `-` for standard input
     scene: String,
     #[command(flatten)]
-    asked: ModelRequest,
+    request: ModelRequest,
     /// Write displacements, velocities and forces over time to this file (.csv or .parquet)
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
@@ -41,7 +41,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let (_, scene) = super::read_scene(&arguments.scene)?;
     let outcome = progress::watched(context, &scene.name, || {
         let curves = arguments.history.is_some() || arguments.page.is_some();
-        kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default(), curves)
+        kinds::of(&scene).reduced(context, &scene, &arguments.request, &SharedBodies::default(), curves)
     })?;
     if let Some(file) = &arguments.page {
         write_file(file, report::model_page(&scene, &outcome).as_bytes())?;
@@ -141,7 +141,7 @@ pub fn table(summary: &Summary) -> String {
         .extend(errors.iter().filter_map(|(name, error)| Some(format!("  {name:<24} {:>14.1e}", (*error)?))));
     let seconds = with_unit(summary.solve_seconds, prefixed("s", summary.solve_seconds), 3);
     lines.extend(summary.steps.map(|steps| format!("  {steps} steps in {seconds}, excluding set-up")));
-    lines.extend(summary.choice.as_ref().map(asked_model::choice_in_words));
+    lines.extend(summary.choice.as_ref().map(requested_model::choice_in_words));
     lines.join("\n")
 }
 

@@ -1,6 +1,6 @@
 //! `impactcheck uncertainty`: how the results scatter with the inputs.
 
-use super::asked_model;
+use super::requested_model;
 use super::progress::Counter;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
@@ -29,7 +29,7 @@ pub struct Arguments {
     #[arg(long, default_value = "auto", value_name = "N|auto", value_parser = samples)]
     samples: RowCount,
     /// Accuracy of auto: half width of the 95 % intervals of mean and standard deviation, over the standard deviation
-    #[arg(long, default_value = "2%", value_name = "SHARE", value_parser = asked_model::tolerance)]
+    #[arg(long, default_value = "2%", value_name = "SHARE", value_parser = requested_model::tolerance)]
     accuracy: f64,
     /// Quantities of auto and of the tables
     #[arg(long = "quantity", value_delimiter = ',', default_value = "efficiency,outer_force_peak,inner_force_peak", value_name = "NAME,…", value_parser = quantity)]

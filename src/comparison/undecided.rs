@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn the_band_asked_for_decides() {
+    fn the_requested_band_decides() {
         for (reduced, needed, verdict) in [(100.4, 0.6, Verdict::Pass), (101.4, 0.4, Verdict::Fail)] {
             let text = sentence(&row(reduced, 2.0), Some(0.05)).expect("undecided");
             assert!(

@@ -23,7 +23,7 @@ const REPORTED_LINES: usize = 3;
 /// What `program` makes of `scene`, run in `folder`; it is asked for samples at the distance of `sample_interval` s.
 pub fn run(scene: &Scene, program: &External, folder: &Path, sample_interval: f64) -> Outcome {
     let start = Instant::now();
-    let answered = asked(scene, program, folder, sample_interval);
+    let answered = run_program(scene, program, folder, sample_interval);
     let seconds = start.elapsed().as_secs_f64();
     match answered {
         Ok((mut summary, history)) => {
@@ -49,7 +49,7 @@ pub fn question(scene: &Scene, sample_interval: f64) -> serde_json::Result<Value
     Ok(json!({ "schema_version": SCHEMA_VERSION, "scene": document, "sample_interval": sample_interval }))
 }
 
-fn asked(
+fn run_program(
     scene: &Scene,
     program: &External,
     folder: &Path,

@@ -138,7 +138,7 @@ impl Plot {
 
     /// Numbers at the marks of both axes, what they are of, and the frame.
     pub(crate) fn frame(&self, x_marks: &[f64], y_marks: &[f64], [x_label, y_label]: [&str; 2]) -> Markup {
-        html! { (self.below(x_marks, x_label)) (self.beside(y_marks, y_label)) (self.outline()) }
+        html! { (self.below(x_marks, x_label)) (self.left_labels(y_marks, y_label)) (self.outline()) }
     }
 
     /// Numbers at the marks of the horizontal axis, and what they are of.
@@ -151,7 +151,7 @@ impl Plot {
     }
 
     /// The same of the vertical axis; without a name for an empty `label`.
-    pub(crate) fn beside(&self, marks: &[f64], label: &str) -> Markup {
+    pub(crate) fn left_labels(&self, marks: &[f64], label: &str) -> Markup {
         html! {
             @for y in marks {
                 text x=(self.left - 8.0) y=(x2(self.y(*y) + 0.36 * FONT_SIZE)) text-anchor="end" { (self.y.label(*y, marks)) }

@@ -90,7 +90,7 @@ fn references_that_are_elsewhere_are_known_by_what_they_showed() {
 
 /// A comparison keeps in the user's store what it found with a reference of that store, once.
 #[test]
-fn comparisons_keep_what_they_find_beside_the_references() {
+fn comparisons_are_stored_with_the_references() {
     let dir = tempfile::tempdir().unwrap();
     let (scene, store) = ("scaled-plate-r6.35", dir.path().join("store"));
     let entry = store.join(scene).join("coarse");

@@ -139,7 +139,7 @@ fn the_folder_that_impactcheck_home_names_comes_first() {
 }
 
 #[test]
-fn files_beside_the_program_are_found() {
+fn files_next_to_the_program_are_found() {
     let elsewhere = Elsewhere::new();
     elsewhere.project("share/impactcheck", "installed");
     elsewhere.does("here", &["reduced", "installed", "--model", "A"], &[]);

@@ -141,7 +141,7 @@ fn a_new_scene_may_be_named_by_its_file() {
 }
 
 #[test]
-fn a_new_scene_names_the_schema_that_stands_beside_it() {
+fn a_new_scene_names_the_schema_in_its_folder() {
     let folder = tempfile::tempdir().unwrap();
     for (name, kind) in [("sub/plate", "plate-impact"), ("sub/seat", "seal-seat")] {
         run(folder.path(), &["new", name, "--kind", kind], 0);

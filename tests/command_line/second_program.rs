@@ -118,7 +118,7 @@ fn both_programs_agree_on_every_recorded_scene() {
 }
 
 #[test]
-fn a_solution_that_is_asked_for_and_missing_or_in_contradiction_ends_with_11() {
+fn a_requested_solution_that_is_missing_or_in_contradiction_ends_with_11() {
     let store = tempfile::tempdir().unwrap();
     let missing = compared(store.path(), &["--reference-check", "--resolution", "coarse"]);
     assert_eq!(missing.status, 11, "{}", missing.said);

@@ -183,7 +183,7 @@ fn offset_of_a_single_mode_is_the_closed_form() {
 
 /// The tip begins where the plate stands, and displacements there are counted from zero.
 #[test]
-fn impact_beside_the_straight_position_closes_its_ledger() {
+fn impact_off_the_straight_position_closes_its_balance() {
     for strike_at in [-0.5, 0.5] {
         let (system, result) = run(&rocker(Bender { strike_at, ..measured() }));
         let tip = system.of_bodies(&system.start[0])[0];

@@ -297,7 +297,7 @@ fn scenes_of_one_name_solved_at_once_are_all_kept() {
 }
 
 #[test]
-fn who_asks_for_what_is_being_computed_waits_and_takes_it() {
+fn a_request_for_a_running_solution_waits_and_takes_it() {
     let bench = Bench::new();
     // a run ends when as many others wait for it as it is told to expect
     let count = r#"wc -l < "$here/others""#;

@@ -71,7 +71,7 @@ pub fn map_of_landings(
     [speeds, angles]: [&[f64]; 2],
     spin: f64,
 ) -> Vec<Landing> {
-    let open = |angle: &&f64| !setup.chamber.is_beside_wall(**angle);
+    let open = |angle: &&f64| !setup.chamber.is_next_to_wall(**angle);
     let launches = angles
         .iter()
         .filter(open)

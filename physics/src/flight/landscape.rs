@@ -61,9 +61,9 @@ impl Landscape {
         let of_seat = seats.map(|seat| setup.field.potential(setup.mass, seat));
         let mut hollows: Vec<Hollow> = Vec::new();
         for (k, turn) in turns.iter().enumerate().filter(|(_, turn)| turn.lowest) {
-            let beside = [k.checked_sub(1), Some(k + 1)].map(|at| at.and_then(|at| turns.get(at)));
-            let range = [beside[0].map_or(low, |t| t.x), beside[1].map_or(high, |t| t.x)];
-            let rim = beside.iter().flatten().map(|t| t.energy).fold(f64::INFINITY, f64::min);
+            let neighbours = [k.checked_sub(1), Some(k + 1)].map(|at| at.and_then(|at| turns.get(at)));
+            let range = [neighbours[0].map_or(low, |t| t.x), neighbours[1].map_or(high, |t| t.x)];
+            let rim = neighbours.iter().flatten().map(|t| t.energy).fold(f64::INFINITY, f64::min);
             let held = held_by_friction(setup, range, turn.x);
             let in_range = |seat: &Vector| (range[0]..=range[1]).contains(&seat.x);
             let seat = match seats.iter().position(in_range) {
@@ -175,9 +175,9 @@ fn turns(setup: &Setup, x: &[f64], energy: &[f64]) -> Vec<Extremum> {
     let height = |s: &[usize; 2]| energy[s[0]];
     let mut found = Vec::new();
     for (k, stretch) in stretches.iter().enumerate() {
-        let beside = [k.checked_sub(1), Some(k + 1)].map(|at| at.and_then(|at| stretches.get(at)));
-        let above = beside.map(|other| other.is_none_or(|other| height(other) > height(stretch)));
-        let below = beside.map(|other| other.is_some_and(|other| height(other) < height(stretch)));
+        let neighbours = [k.checked_sub(1), Some(k + 1)].map(|at| at.and_then(|at| stretches.get(at)));
+        let above = neighbours.map(|other| other.is_none_or(|other| height(other) > height(stretch)));
+        let below = neighbours.map(|other| other.is_some_and(|other| height(other) < height(stretch)));
         let lowest = above == [true; 2];
         if lowest || below == [true; 2] {
             let sign = if lowest { 1.0 } else { -1.0 };

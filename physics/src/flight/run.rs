@@ -119,16 +119,16 @@ pub(super) fn moved(
     landscape: &Landscape,
     start: State,
     mode: MotionMode,
-    asked: MotionRequest,
+    request: MotionRequest,
 ) -> Flight {
     let mut running = FlightRun { setup, landscape, state: start, mode, events: 0, touches: 0, first: None };
-    let mut path = if asked.path { vec![start] } else { Vec::new() };
-    let side = asked.beyond.map(|x| (start.place.x - x).signum());
+    let mut path = if request.path { vec![start] } else { Vec::new() };
+    let side = request.beyond.map(|x| (start.place.x - x).signum());
     for _ in 0..MOST_STEPS {
-        let passed = asked.beyond.zip(side).is_some_and(|(x, side)| (running.state.place.x - x) * side < 0.0);
+        let passed = request.beyond.zip(side).is_some_and(|(x, side)| (running.state.place.x - x) * side < 0.0);
         let ending = if passed { Some(Ending::Passed) } else { running.ending() };
         let ending = ending.or_else(|| running.go());
-        if asked.path {
+        if request.path {
             path.push(running.state);
         }
         if let Some(ending) = ending {

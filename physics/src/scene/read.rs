@@ -22,8 +22,8 @@ impl Grammar {
     /// # Errors
     /// [`Error::Scene`] with every fault, its place and what would be valid.
     pub(crate) fn parse(&self, source_name: &str, text: &str) -> Result<Scene> {
-        let (values, beside) = self.checked(source_name, text)?;
-        let scene = self.assemble(&values, beside)?;
+        let (values, annotations) = self.checked(source_name, text)?;
+        let scene = self.assemble(&values, annotations)?;
         refuse_collisions(&scene, source_name, text)?;
         Ok(scene)
     }
@@ -32,7 +32,7 @@ impl Grammar {
     ///
     /// # Errors
     /// As [`Self::parse`].
-    pub(super) fn checked(&self, source_name: &str, text: &str) -> Result<(Values, Beside)> {
+    pub(super) fn checked(&self, source_name: &str, text: &str) -> Result<(Values, Annotations)> {
         let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
         let root = tree.get_ref();
         if root.is_empty() {
@@ -61,13 +61,13 @@ impl Grammar {
             }
         }
         match checker.problems.is_empty() {
-            true => Ok((values, Beside { tolerances, uncertainty })),
+            true => Ok((values, Annotations { tolerances, uncertainty })),
             false => Err(Error::Scene(checker.problems.into_report())),
         }
     }
 
     /// The scene that checked values describe.
-    pub(super) fn assemble(&self, values: &Values, beside: Beside) -> Result<Scene> {
+    pub(super) fn assemble(&self, values: &Values, annotations: Annotations) -> Result<Scene> {
         let root = &Node(values);
         let materials = root.table("materials")?;
         let name = root.text("kind")?;
@@ -85,8 +85,8 @@ impl Grammar {
             run: RunSettings { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
             reduced: reduced(root.optional_table("reduced")?)?,
             reference,
-            tolerances: beside.tolerances,
-            uncertainty: beside.uncertainty,
+            tolerances: annotations.tolerances,
+            uncertainty: annotations.uncertainty,
             flight: flight(root)?,
             vibration: vibration(root)?,
             external: root.tables("external")?.iter().map(external).collect::<Result<_>>()?,
@@ -137,7 +137,7 @@ fn too_large(name: &str, size: String) -> Error {
 
 /// What a scene file says beside the impact; its tables have readers of their own.
 #[derive(Debug, Clone)]
-pub(super) struct Beside {
+pub(super) struct Annotations {
     pub(super) tolerances: BTreeMap<String, Tolerances>,
     pub(super) uncertainty: Option<Uncertainty>,
 }

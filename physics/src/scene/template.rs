@@ -6,7 +6,7 @@
 use super::collision::Collision;
 use super::field::{fields_of, index, number_in, without_effect};
 use super::material;
-use super::read::{Beside, refuse_collisions};
+use super::read::{Annotations, refuse_collisions};
 use super::values::Node;
 use super::values::{Checked, Values};
 use super::{Distribution, Field, Grammar, Rejected, Scene, suggestion};
@@ -27,7 +27,7 @@ use crate::{Error, Result};
 pub struct Template {
     grammar: &'static Grammar,
     values: Values,
-    beside: Beside,
+    annotations: Annotations,
     scene: Scene,
     text: String,
 }
@@ -38,11 +38,11 @@ impl Template {
     /// # Errors
     /// As [`Scene::parse`].
     pub(crate) fn new(grammar: &'static Grammar, source_name: &str, text: &str) -> Result<Self> {
-        let (values, beside) = grammar.checked(source_name, text)?;
-        let scene = grammar.assemble(&values, beside.clone())?;
+        let (values, annotations) = grammar.checked(source_name, text)?;
+        let scene = grammar.assemble(&values, annotations.clone())?;
         refuse_collisions(&scene, source_name, text)?;
-        let beside = Beside { uncertainty: None, ..beside };
-        Ok(Template { grammar, values, beside, scene, text: text.to_owned() })
+        let annotations = Annotations { uncertainty: None, ..annotations };
+        Ok(Template { grammar, values, annotations, scene, text: text.to_owned() })
     }
 
     /// The scene as it stands in the file.
@@ -105,7 +105,7 @@ impl Template {
             None => Ok(()),
         };
         refused(material::collisions(&Node(&values)).map_err(fault)?)?;
-        let scene = self.grammar.assemble(&values, self.beside.clone()).map_err(fault)?;
+        let scene = self.grammar.assemble(&values, self.annotations.clone()).map_err(fault)?;
         refused(scene.setup.bodies().collisions())?;
         Ok(scene)
     }

@@ -30,10 +30,10 @@ fn a_short_touch_is_not_passed() {
 #[test]
 fn amplified_errors_are_estimated_and_mended() {
     let case = draw(236_931);
-    let (system, asked) = (&case.dry.system, options(&case, 1e-7));
-    let plain = integrate(system, None, &asked).unwrap();
+    let (system, requested) = (&case.dry.system, options(&case, 1e-7));
+    let plain = integrate(system, None, &requested).unwrap();
     assert!(error(&case, &plain) > 1e-5 && plain.error_estimate.is_none());
-    let sure = assured(&asked, system, |options| integrate(system, None, options)).unwrap();
+    let sure = assured(&requested, system, |options| integrate(system, None, options)).unwrap();
     let estimate = sure.error_estimate.unwrap();
     assert!(error(&case, &sure) <= estimate && estimate <= 1e-6, "{estimate:e}");
 }
@@ -44,14 +44,14 @@ fn amplified_errors_are_estimated_and_mended() {
 fn defects_of_many_steps_add_up() {
     for seed in [30_000_004_755, 14_000_015_476] {
         let case = draw(seed);
-        let (system, asked) = (&case.dry.system, options(&case, 1e-7));
+        let (system, requested) = (&case.dry.system, options(&case, 1e-7));
         let exact = integrate(system, None, &options(&case, 1e-11)).unwrap();
         let apart = |result: &Integration| {
             let peaks = [result, &exact].map(|result| result.contacts.map(|c| c.force_peak));
             crate::dynamics::assured::differences(system, [result.velocity, exact.velocity], peaks)[1]
         };
-        assert!(apart(&integrate(system, None, &asked).unwrap()) > 1e-5);
-        let sure = assured(&asked, system, |options| integrate(system, None, options)).unwrap();
+        assert!(apart(&integrate(system, None, &requested).unwrap()) > 1e-5);
+        let sure = assured(&requested, system, |options| integrate(system, None, options)).unwrap();
         assert!(apart(&sure) < 1e-6, "{seed}: {:e}", apart(&sure));
     }
 }

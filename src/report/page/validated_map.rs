@@ -92,7 +92,7 @@ impl<'a> ValidatedMap<'a> {
                 height=[at.map(|_| HEIGHT)] font-size=(FONT_SIZE) role="img" aria-label=(description) {
                 (plot.grid(&x_marks, &y_marks))
                 (plot.below(&x_marks, MEASURES[0]))
-                (plot.beside(&y_marks, ""))
+                (plot.left_labels(&y_marks, ""))
                 (plot.outline())
                 text x=(LEFT) y="17" { tspan font-weight="600" { (model) } ": " (MEASURES[measure]) }
                 @if let Some(here) = &self.here {
