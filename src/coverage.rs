@@ -110,12 +110,12 @@ pub struct FeatureCoverage {
     /// The feature.
     pub feature: &'static str,
     /// One entry per model that takes a scene with it and partner; empty if no scene has it or no model takes it.
-    pub partners: Vec<Partner>,
+    pub partners: Vec<FeatureComparison>,
 }
 
 /// A model and what it is held against.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Partner {
+pub struct FeatureComparison {
     /// The reduced model.
     pub model: String,
     /// "axisymmetric" or "solid" finite elements, [`CLOSED_FORM`], or the name of another program; `None`: the model takes the
@@ -140,10 +140,10 @@ fn is_shown_by(feature: &Feature, case: &Case) -> bool {
 /// What `cases` show.
 pub fn coverage(cases: &[Case]) -> Coverage {
     let features = features().map(|feature| {
-        let mut partners: BTreeMap<(Model, Option<&str>), Partner> = BTreeMap::new();
+        let mut partners: BTreeMap<(Model, Option<&str>), FeatureComparison> = BTreeMap::new();
         for case in cases.iter().filter(|case| is_shown_by(feature, case)) {
             let partner = case.finding.as_ref().map(|finding| &*finding.partner);
-            let new = || Partner::of(case.model, partner);
+            let new = || FeatureComparison::of(case.model, partner);
             partners.entry((case.model, partner)).or_insert_with(new).add(case);
         }
         // a scene without a partner says nothing new of a model that has one elsewhere
@@ -155,9 +155,9 @@ pub fn coverage(cases: &[Case]) -> Coverage {
     Coverage { schema_version: SCHEMA_VERSION, features: features.collect() }
 }
 
-impl Partner {
+impl FeatureComparison {
     fn of(model: Model, partner: Option<&str>) -> Self {
-        Partner {
+        FeatureComparison {
             model: model.to_string(),
             partner: partner.map(str::to_owned),
             scenes: Vec::new(),

@@ -81,9 +81,9 @@ def _lower(field: Floats, groups: Ints, share: float) -> Mask:
         size = np.count_nonzero(members)
         given = min(2.0**number * owed, share * size)
         owed -= given / 2.0**number
-        wanted = share - given / size
+        target = share - given / size
         least, most = np.quantile(
-            field[members], [max(0.0, wanted - SLACK), min(1.0, wanted + SLACK)]
+            field[members], [max(0.0, target - SLACK), min(1.0, target + SLACK)]
         )
         lower[members] = field[members] <= min(max(cut, least), most)
     return lower

@@ -123,7 +123,7 @@ def supervise(
     """
     saved: dict[str, Any] = (checkpoint.load() if checkpoint else None) or {}
     critical = float(saved["critical"]) if saved else critical_time_step()
-    time_step, stride, wanted, most = _steps(loop, plan, courant * critical, critical)
+    time_step, stride, required, most = _steps(loop, plan, courant * critical, critical)
     split = max(1, round(CHATTER_FRACTION * plan.duration / time_step))
     loop.set_step(time_step, split, most)
     interval = stride * time_step
@@ -144,8 +144,8 @@ def supervise(
         seconds = float(saved["seconds"])
     chunk = plan.chunk or max(CHUNK_SAMPLES, math.ceil(CHUNK_STEPS / stride))
     started = time.perf_counter()
-    while samples < wanted:
-        count = min(chunk, wanted - samples)
+    while samples < required:
+        count = min(chunk, required - samples)
         if frames is not None:
             frames(samples, loop)
             count = min(count, frames.following(samples) - samples)
@@ -235,8 +235,8 @@ def _steps(
         longest = math.ceil(plan.longest * plan.duration / (stride * time_step))
         return time_step, stride, longest, most
     # The last sample falls exactly on the end: the step shrinks by less than one part in 1000.
-    wanted = max(1, math.ceil(plan.end_time / (stride * time_step) - 1e-9))
-    return plan.end_time / (wanted * stride), stride, wanted, most
+    required = max(1, math.ceil(plan.end_time / (stride * time_step) - 1e-9))
+    return plan.end_time / (required * stride), stride, required, most
 
 
 def stable_run(attempt: Callable[[int], T], account: Callable[[T], Account]) -> T:

@@ -178,10 +178,10 @@ def test_measured_records_are_compared_with_the_models(tmp_path: Path) -> None:
     comparison = ic.compare(scene, models=["B", "C"], measured=records, bandwidth="150 kHz")
     measured = comparison.measured()
     assert measured is not None and measured["bandwidth"] == 150e3
-    partners = {row["partner"]: row for row in measured["partners"]}
-    assert set(partners) == {"reference", "B", "C"} and measured["efficiency"]["count"] == 2
+    comparators = {row["partner"]: row for row in measured["partners"]}
+    assert set(comparators) == {"reference", "B", "C"} and measured["efficiency"]["count"] == 2
     assert abs(measured["efficiency"]["mean"] - 0.695) < 0.02
-    assert abs(partners["reference"]["efficiency_difference"]) < 0.02
+    assert abs(comparators["reference"]["efficiency_difference"]) < 0.02
     assert ic.compare(scene, models=["C"]).measured() is None
     for arguments, word in [
         ({"measured": records, "bandwidth": "1 Hz"}, "100 MHz"),

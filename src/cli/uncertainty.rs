@@ -98,7 +98,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             RowCount::Auto => Samples::Until(arguments.accuracy),
             RowCount::Rows(rows) => Samples::Rows(rows),
         },
-        wanted: arguments.quantities.clone(),
+        quantities: arguments.quantities.clone(),
         seed: arguments.seed,
     };
     let counter = Counter::new(context, &template.scene().name);
@@ -114,7 +114,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         context.note(format_args!("note: {note}"));
     }
     let drawn = (figure.is_some() || arguments.out.is_some())
-        .then(|| report::scatter_figure(&scatter, &request.wanted));
+        .then(|| report::scatter_figure(&scatter, &request.quantities));
     if let (Some((file, format)), Some(svg)) = (figure, &drawn) {
         let figure = FigureFile { title: scatter.scene.clone(), svg: svg.clone() };
         write_file(file, &format.bytes(&figure)?)?;
@@ -127,11 +127,11 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         write_file(&folder.join("uncertainty.svg"), svg.as_bytes())?;
         context.note(format_args!("wrote {}", folder.join("uncertainty.svg").display()));
     }
-    arguments.json.print(&scatter, |_| table(&scatter, &request.wanted))?;
+    arguments.json.print(&scatter, |_| table(&scatter, &request.quantities))?;
     Ok(ExitStatus::Pass)
 }
 
-fn table(scatter: &Scatter, wanted: &[String]) -> String {
+fn table(scatter: &Scatter, quantities: &[String]) -> String {
     let mut lines = vec![format!(
         "{} (model {}): {} samples of {} inputs",
         scatter.scene,
@@ -145,7 +145,7 @@ fn table(scatter: &Scatter, wanted: &[String]) -> String {
             [(input.nominal, 6), (input.standard_deviation, 3)].map(|(v, n)| with_unit(v, to, n));
         lines.push(format!("  {name:<36} {nominal:>14} ± {deviation}"));
     }
-    for name in wanted {
+    for name in quantities {
         if let Some(of) = scatter.quantities.get(&**name) {
             lines.extend(of_quantity(name, of));
         }

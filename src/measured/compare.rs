@@ -31,7 +31,7 @@ pub struct Measured {
     /// Efficiency over the records, each impact once; `None` if none of them shows one.
     pub efficiency: Option<Series>,
     /// Reference and models against the first record.
-    pub partners: Vec<Partner>,
+    pub partners: Vec<MeasuredComparison>,
     /// Time axis of the curves.
     pub window: CommonAxis,
     /// The first record on it.
@@ -68,7 +68,7 @@ impl Series {
 
 /// The reference or a model against the measurement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Partner {
+pub struct MeasuredComparison {
     /// "reference" or the model's name.
     pub partner: String,
     /// Its efficiency; `None` if its run was cut during a contact.
@@ -137,7 +137,7 @@ pub fn compare(
                 })
                 .collect();
             let (validation, area) = efficiency.assessed(&outcome.summary, scatter_of(scatters, partner));
-            Ok(Partner {
+            Ok(MeasuredComparison {
                 partner: partner.to_owned(),
                 efficiency: outcome.summary.value("efficiency"),
                 efficiency_difference: efficiency.difference(&outcome.summary),

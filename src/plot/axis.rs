@@ -60,14 +60,14 @@ impl PlotAxis {
         self.value(0.5 * (self.measure(a) + self.measure(b)))
     }
 
-    /// Round numbers, about `wanted` of them; of many decades each second or later one.
-    pub(crate) fn marks(&self, wanted: usize) -> Vec<f64> {
-        let chosen = if self.logarithmic { self.decades(wanted) } else { None };
-        chosen.unwrap_or_else(|| ticks(self.low, self.high, wanted))
+    /// Round numbers, about `count` of them; of many decades each second or later one.
+    pub(crate) fn marks(&self, count: usize) -> Vec<f64> {
+        let chosen = if self.logarithmic { self.decades(count) } else { None };
+        chosen.unwrap_or_else(|| ticks(self.low, self.high, count))
     }
 
     /// Marks of a logarithmic axis; `None` if it is too short for them.
-    fn decades(&self, wanted: usize) -> Option<Vec<f64>> {
+    fn decades(&self, count: usize) -> Option<Vec<f64>> {
         let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
         let powers = |(every, multiples): (usize, &'static [f64])| -> Vec<f64> {
             let decades = decades.clone().step_by(every);
@@ -76,7 +76,7 @@ impl PlotAxis {
         };
         let candidates =
             std::iter::once((1, &[1.0, 2.0, 5.0][..])).chain((1..8).map(|every| (every, &[1.0][..])));
-        candidates.map(powers).find(|marks| (3..=wanted).contains(&marks.len()))
+        candidates.map(powers).find(|marks| (3..=count).contains(&marks.len()))
     }
 
     /// The number at a mark.

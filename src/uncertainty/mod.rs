@@ -12,6 +12,6 @@ mod study;
 pub mod validation;
 
 pub use draw::Inputs;
-pub use request::{Request, Samples, WANTED};
+pub use request::{Request, Samples, DEFAULT_QUANTITIES};
 pub use scatter::{Correlated, Input, Local, QuantityScatter, Scatter, Share};
 pub use study::{study, uncertainty_of};

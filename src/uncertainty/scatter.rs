@@ -213,7 +213,7 @@ impl Scatter {
                     .to_owned(),
             );
         }
-        notes.extend(request.wanted.iter().filter_map(|name| curved(name, quantities.get(&**name)?)));
+        notes.extend(request.quantities.iter().filter_map(|name| curved(name, quantities.get(&**name)?)));
         let input = |of: &crate::scene::UncertainInput| Input {
             unit: of.unit,
             nominal: of.nominal,

@@ -1,4 +1,4 @@
-//! A study: impacts until mean and scatter of the wanted quantities are known well enough.
+//! A study: impacts until mean and scatter of the requested quantities are known well enough.
 
 use super::design::{MOST_INPUTS, MOST_ROWS, REPLICATES};
 use super::draw::Inputs;
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Rows of the first look: 16 of each sequence.
 const FIRST_ROWS: usize = 16 * REPLICATES;
 /// Rows up to which accuracy is looked for.
-const MOST_WANTED: usize = 1 << 16;
+const LARGEST_STUDY: usize = 1 << 16;
 /// Relative error that the time integration may have in all results, far below any scatter worth a study.
 const TOLERANCE: f64 = 4e-5;
 
@@ -76,8 +76,8 @@ impl Growing<'_> {
         (0..rows).filter_map(row).collect()
     }
 
-    /// Half width of the widest interval of mean and deviation of the wanted quantities, over the deviation.
-    fn accuracy(&self, rows: usize, wanted: &[String]) -> f64 {
+    /// Half width of the widest interval of mean and deviation of the requested quantities, over the deviation.
+    fn accuracy(&self, rows: usize, quantities: &[String]) -> f64 {
         let of = |quantity: &String| {
             let rows = self.rows(rows, quantity);
             let (mean, deviation) = (mean(&rows), standard_deviation(&rows));
@@ -85,7 +85,7 @@ impl Growing<'_> {
             if width == 0.0 { 0.0 } else { width / deviation.value }
         };
         // what is no number is as wide as can be
-        wanted
+        quantities
             .iter()
             .map(of)
             .fold(0.0, |widest, width| if width > widest || width.is_nan() { width } else { widest })
@@ -133,8 +133,8 @@ pub fn study(
     growing.grow(rows, on_progress)?;
     let reached = loop {
         let Samples::Until(accuracy) = request.samples else { break None };
-        let reached = growing.accuracy(rows, &request.wanted);
-        if reached <= accuracy || 2 * rows > MOST_WANTED {
+        let reached = growing.accuracy(rows, &request.quantities);
+        if reached <= accuracy || 2 * rows > LARGEST_STUDY {
             break Some(reached <= accuracy);
         }
         rows *= 2;

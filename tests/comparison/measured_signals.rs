@@ -79,9 +79,9 @@ fn record(truth: &Outcome, signals: &[&'static str], with: Disturbance) -> Recor
     Record { file: "synthetic.csv".into(), time, channels }
 }
 
-fn aligned(record: &Record, partner: &Outcome, setup: &PlateImpact, speed: Speed) -> AlignedRecord {
-    let filtered = Filtered::new(&partner.history, BANDWIDTH).unwrap();
-    align(record, &filtered, determined(partner), &approach(setup), (BANDWIDTH, speed)).unwrap()
+fn aligned(record: &Record, outcome: &Outcome, setup: &PlateImpact, speed: Speed) -> AlignedRecord {
+    let filtered = Filtered::new(&outcome.history, BANDWIDTH).unwrap();
+    align(record, &filtered, determined(outcome), &approach(setup), (BANDWIDTH, speed)).unwrap()
 }
 
 #[test]
@@ -91,11 +91,11 @@ fn shift_within_a_tenth_of_a_microsecond_and_efficiency_within_half_a_point() {
         let truth = model(&scene, Model::C);
         let expected = truth.summary.value("efficiency").unwrap();
         // the model the record was made from, and the finite elements, which differ from it by a little
-        for (partner, seeds) in [(&truth, 1..=8), (&reference(&scene), 1..=3)] {
+        for (outcome, seeds) in [(&truth, 1..=8), (&reference(&scene), 1..=3)] {
             let mut bands = Vec::new();
             for seed in seeds {
                 let record = record(&truth, &SIGNALS, Disturbance { seed, ..DISTURBED });
-                let found = aligned(&record, partner, &setup, Speed::Scene);
+                let found = aligned(&record, outcome, &setup, Speed::Scene);
                 let (efficiency, band) = (found.efficiency.unwrap(), found.efficiency_uncertainty.unwrap());
                 let case = format!("{name}, seed {seed}: {:e} s, {efficiency}", found.shift);
                 assert!((found.shift - 5e-6).abs() < 0.1e-6, "{case}");

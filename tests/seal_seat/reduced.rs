@@ -5,7 +5,7 @@
 use assert_cmd::Command;
 use impactcheck::body::cache::Cache;
 use impactcheck::kinds::seal_seat::SeatQuantities;
-use impactcheck::kinds::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
+use impactcheck::kinds::seal_seat::{ContactBody, SeatMesh, SeatModel, Zones};
 use impactcheck::result::Summary;
 use impactcheck::scene::{Model, Scene};
 use serde_json::Value;
@@ -182,10 +182,10 @@ fn a_node_that_stands_alone_in_its_zone_has_candidates_around_it() {
     let setup = scene.seal_seat().expect("seal seat");
     let narrow = Zones { ring: 1e-9, tip: 1e-9 };
     let body = mesh().body(setup, &narrow, 1, &Cache::off()).expect("body");
-    for partner in [Partner::Sphere, Partner::Tip(0), Partner::Tip(1)] {
-        let offsets = body.candidates.iter().filter(|c| c.partner == partner).map(|c| c.offset);
+    for contact_body in [ContactBody::Sphere, ContactBody::Tip(0), ContactBody::Tip(1)] {
+        let offsets = body.candidates.iter().filter(|c| c.contact_body == contact_body).map(|c| c.offset);
         let (inside, around): (Vec<f64>, Vec<f64>) = offsets.partition(|offset| *offset <= 1e-9);
-        assert!(!inside.is_empty() && around.len() >= 4, "{partner:?}: {inside:?} {around:?}");
+        assert!(!inside.is_empty() && around.len() >= 4, "{contact_body:?}: {inside:?} {around:?}");
     }
 }
 
@@ -197,15 +197,15 @@ fn candidates_lie_on_the_exact_surfaces() {
     let mut on_ring = 0;
     for candidate in &sixteen().system().candidates {
         let [x, y, z] = candidate.place.into();
-        match candidate.partner {
-            Partner::Sphere => {
+        match candidate.contact_body {
+            ContactBody::Sphere => {
                 // a cone that touches the sphere: r^2 + d^2 at the distance d from the ring
                 let distance = (x - cx).hypot(y).hypot(z - cz);
                 let expected = setup.sphere.radius.hypot(candidate.offset);
                 assert!((distance - expected).abs() < 1e-9, "{distance} {expected}");
                 on_ring += usize::from(candidate.offset < 1e-9);
             }
-            Partner::Tip(tip) => {
+            ContactBody::Tip(tip) => {
                 assert_eq!(z, 0.0);
                 let near = (x - setup.actuator.tip_positions[tip]).hypot(y);
                 assert!((near - candidate.offset).abs() < 1e-15);

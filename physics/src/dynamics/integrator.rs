@@ -154,7 +154,7 @@ impl<'a> DryStepper<'a> {
     /// Takes one step, as long as the tolerance permits.
     fn step(&mut self) -> Result<()> {
         // the end of a step that an event asked for
-        let mut wanted = None;
+        let mut shortened = None;
         let mut solved = true;
         loop {
             if self.length.is_exhausted() {
@@ -163,7 +163,7 @@ impl<'a> DryStepper<'a> {
             self.length.limit();
             let h = self.length.length();
             let rest = self.end_time - self.time;
-            let shorter = wanted.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
+            let shorter = shortened.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
             let (bank, collocation, system) =
                 (&self.solver.bank, self.solver.collocation, self.solver.system);
             let scale = momentum_scale(system, &self.contacts);
@@ -189,7 +189,7 @@ impl<'a> DryStepper<'a> {
             );
             solved = trial.is_some();
             let Some(trial) = trial else {
-                wanted = None;
+                shortened = None;
                 self.length.halve();
                 continue;
             };
@@ -198,9 +198,9 @@ impl<'a> DryStepper<'a> {
                 self.judge(&trial, scale, self.energy.excess(energy_error, h, 0.0));
             if excess > 1.0 {
                 match event {
-                    Some(u) if wanted.is_none() => wanted = Some(u * h),
+                    Some(u) if shortened.is_none() => shortened = Some(u * h),
                     _ => {
-                        wanted = None;
+                        shortened = None;
                         self.length.shorten(excess);
                     }
                 }

@@ -28,9 +28,9 @@ const BLUE: &str = "#0072b2";
 const PALE: &str = "#a9cfe6";
 const ORANGE: &str = "#d55e00";
 
-/// The figure of the quantities called `wanted` as a stand-alone SVG.
-pub fn scatter_figure(scatter: &Scatter, wanted: &[String]) -> String {
-    let found = wanted.iter().filter_map(|name| Some((name, scatter.quantities.get(&**name)?)));
+/// The figure of the quantities called `quantities` as a stand-alone SVG.
+pub fn scatter_figure(scatter: &Scatter, quantities: &[String]) -> String {
+    let found = quantities.iter().filter_map(|name| Some((name, scatter.quantities.get(&**name)?)));
     let quantities: Vec<(&String, &QuantityScatter)> = found.collect();
     let block = HEAD + HEIGHT.max(ROW * scatter.inputs.len() as f64) + FOOT;
     let content = html! {

@@ -22,8 +22,8 @@ pub(crate) fn discrepancy_picture(comparison: &SceneComparison) -> Markup {
     };
     let is_number =
         |row: &Discrepancy| first.summary.quantities.get(&row.quantity).is_some_and(|q| !q.is_count);
-    let names = |wanted: &dyn Fn(&Discrepancy) -> bool| -> Vec<&str> {
-        first.discrepancies.iter().filter(|row| wanted(row)).map(|row| &*row.quantity).collect()
+    let names = |is_selected: &dyn Fn(&Discrepancy) -> bool| -> Vec<&str> {
+        first.discrepancies.iter().filter(|row| is_selected(row)).map(|row| &*row.quantity).collect()
     };
     let (numbers, curves) = (names(&is_number), names(&|row| row.quantity.ends_with("_rms")));
     let shown = |row: &&Discrepancy| numbers.contains(&&*row.quantity) || row.quantity.ends_with("_max");

@@ -38,9 +38,9 @@ impl TetMesh {
             for (node, surfaces) in surfaces.iter().enumerate() {
                 for surface in *surfaces {
                     let (distance, normal) = surface.distance(displaced[node]);
-                    let wanted = normal.dot(&(displaced[node] - body.points[node])) - distance;
+                    let missing = normal.dot(&(displaced[node] - body.points[node])) - distance;
                     pulled.stiffen(node, pull * normal * normal.transpose());
-                    (0..3).for_each(|c| load[3 * node + c] += pull * wanted * normal[c]);
+                    (0..3).for_each(|c| load[3 * node + c] += pull * missing * normal[c]);
                 }
             }
             let numbers: Vec<[usize; 3]> =

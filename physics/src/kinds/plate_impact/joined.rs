@@ -37,7 +37,7 @@ pub(super) struct Joined {
 }
 
 /// Which modes of the continuum plate are wanted.
-pub(super) enum Wanted {
+pub(super) enum RequestedModes {
     /// So many.
     Modes(usize),
     /// As many as the error estimate asks for.
@@ -129,12 +129,12 @@ pub(super) fn kirchhoff_plate(
 /// Model C.
 pub(super) fn continuum(
     setup: &PlateImpact,
-    wanted: Wanted,
+    requested: RequestedModes,
     predictor: &Predictor,
     bodies: Continua,
 ) -> Result<Joined> {
     let rigid = usize::from(setup.plate.edge == Edge::Free);
-    let (plate, omega_next) = continuum_plate(setup, wanted, predictor, bodies)?;
+    let (plate, omega_next) = continuum_plate(setup, requested, predictor, bodies)?;
     let elastic = plate.omega.len() - rigid;
     let inner: Vec<f64> = plate.participation.iter().map(|phi| phi[1]).collect();
     let fluid = fluid_forces(setup, |radii| continuum_shapes(setup, predictor, elastic, &inner, radii))?;
@@ -180,7 +180,7 @@ pub(super) fn fluid_forces(
 /// Plate of model C: continuum with residual flexibility; and the frequency in rad/s of the lowest mode that is left to it.
 fn continuum_plate(
     setup: &PlateImpact,
-    wanted: Wanted,
+    requested: RequestedModes,
     predictor: &Predictor,
     bodies: Continua,
 ) -> Result<(ModalBody, f64)> {
@@ -189,14 +189,14 @@ fn continuum_plate(
     let lowest = |plate: &ContinuumPlate, modes| {
         Ok((plate.modal_body(modes, predictor.slow()), plate.omega_next(modes)))
     };
-    match wanted {
-        Wanted::Modes(modes) => lowest(&build(modes)?, modes),
-        Wanted::Below(cut) => {
+    match requested {
+        RequestedModes::Modes(modes) => lowest(&build(modes)?, modes),
+        RequestedModes::Below(cut) => {
             let plate = build(cut.modes)?;
             let below = plate.omega.iter().filter(|omega| **omega < cut.omega).count();
             lowest(&plate, below.clamp(1, cut.modes))
         }
-        Wanted::Estimate => {
+        RequestedModes::Estimate => {
             let mut most = DEFAULT_MODES;
             loop {
                 let plate = build(most)?;

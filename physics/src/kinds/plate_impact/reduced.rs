@@ -5,7 +5,7 @@ mod run;
 use super::choice::ChoicePlan;
 use super::closed_form;
 use super::continua::Continua;
-use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate};
+use super::joined::{Joined, RequestedModes, continuum, kirchhoff, kirchhoff_plate};
 use super::results::PlateQuantities;
 use super::shared::SharedBodies;
 use super::{MAX_MODES, PlateImpact};
@@ -81,8 +81,8 @@ impl Reduced {
             }
             Model::C => {
                 let predictor = bodies.predictor(setup)?;
-                let wanted = modes.map_or(Wanted::Estimate, Wanted::Modes);
-                continuum(setup, wanted, &predictor, bodies.continua())?
+                let requested = modes.map_or(RequestedModes::Estimate, RequestedModes::Modes);
+                continuum(setup, requested, &predictor, bodies.continua())?
             }
         };
         Self::of(built, model, scene, None)
@@ -119,7 +119,7 @@ impl Reduced {
         let mut plan = ChoicePlan::new(&normal, tolerance)?;
         let mut continua: Option<Joined> = plan.closed_form.then(|| plan.trials.closed_form(plan.modes));
         while let Some(cut) = plan.cut {
-            match continuum(setup, Wanted::Below(cut), &plan.trials.predictor, Continua::meshed(cache)) {
+            match continuum(setup, RequestedModes::Below(cut), &plan.trials.predictor, Continua::meshed(cache)) {
                 Ok(built) => {
                     plan.judge(&built.system, built.omega_next);
                     continua = Some(built);

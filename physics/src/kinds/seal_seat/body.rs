@@ -141,11 +141,11 @@ impl SeatMesh {
             return Err(self.of_another("it has no face on the rim of the membrane"));
         }
         let candidates = candidates(scene, &mesh, zones);
-        if !candidates.iter().any(|c| c.partner == super::Partner::Sphere) {
+        if !candidates.iter().any(|c| c.contact_body == super::ContactBody::Sphere) {
             return Err(self.of_another("it has no node on the contact ring"));
         }
         for (tip, x) in scene.actuator.tip_positions.iter().enumerate() {
-            if !candidates.iter().any(|c| c.partner == super::Partner::Tip(tip)) {
+            if !candidates.iter().any(|c| c.contact_body == super::ContactBody::Tip(tip)) {
                 return Err(self.of_another(&format!("it has no node under the tip at x = {x} m")));
             }
         }

@@ -228,7 +228,7 @@ impl<'a> SealSeatRun<'a> {
                 .zip(&amplitude)
                 .map(|(shape, a)| a * shape[3 * i..3 * i + 3].iter().map(|s| s * s).sum::<f64>().sqrt())
                 .sum();
-            let (ball, moved, velocity) = self.partner(candidate);
+            let (ball, moved, velocity) = self.contact_body(candidate);
             let from = self.system.balls[ball].centre + moved - candidate.place;
             let square = velocity.norm_squared();
             let nearest = if square > 0.0 { (-from.dot(&velocity) / square).max(0.0) } else { 0.0 };
@@ -237,11 +237,11 @@ impl<'a> SealSeatRun<'a> {
     }
 
     /// Number of the ball a candidate meets, its displacement and velocity.
-    fn partner(&self, candidate: &super::Candidate) -> (usize, Vector3<f64>, Vector3<f64>) {
+    fn contact_body(&self, candidate: &super::Candidate) -> (usize, Vector3<f64>, Vector3<f64>) {
         let state = &self.state;
-        match candidate.partner {
-            super::Partner::Sphere => (0, in_plane(state.sphere), in_plane(state.sphere_velocity)),
-            super::Partner::Tip(tip) => {
+        match candidate.contact_body {
+            super::ContactBody::Sphere => (0, in_plane(state.sphere), in_plane(state.sphere_velocity)),
+            super::ContactBody::Tip(tip) => {
                 (1 + tip, in_plane([0.0, state.actuator]), in_plane([0.0, state.actuator_velocity]))
             }
         }
@@ -294,7 +294,7 @@ impl Stepper for SealSeatRun<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::nodes::{Ball, Nodes};
-    use super::super::{Candidate, Partner};
+    use super::super::{Candidate, ContactBody};
     use super::*;
     use crate::material::Relaxation;
     use std::f64::consts::PI;
@@ -317,7 +317,7 @@ mod tests {
             candidates: vec![Candidate {
                 node: 0,
                 place,
-                partner: Partner::Tip(0),
+                contact_body: ContactBody::Tip(0),
                 offset: 0.0,
                 right_flank: false,
             }],

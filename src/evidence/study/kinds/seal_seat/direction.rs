@@ -43,7 +43,7 @@ struct Direction {
 pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
     let store = Store::open(settings.store.as_deref());
     let (mut rows, mut claims, mut sentences) = (Vec::new(), Vec::new(), Vec::new());
-    for (design, name, wanted) in DESIGNS {
+    for (design, name, expected) in DESIGNS {
         let scene = of_project(name)?;
         let [coarse, paper] = [Resolution::Coarse, Resolution::Paper].map(|resolution| {
             note(&format!("{name}: the stored reference's own mesh, {resolution}"));
@@ -63,7 +63,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             offset_band / DEGREE
         ));
         let half = |what: &str| format!("{design} design: {what}");
-        claims.push(Claim::new(half("half-width of the band"), "rad", None, Some(band), wanted));
+        claims.push(Claim::new(half("half-width of the band"), "rad", None, Some(band), expected));
         claims.push(Claim::new(
             half("the stored reference's direction, within its own band"),
             "rad",
