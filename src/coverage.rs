@@ -148,8 +148,8 @@ pub fn coverage(cases: &[Case]) -> Coverage {
         }
         // a scene without a partner says nothing new of a model that has one elsewhere
         let whole = |key: &&(Model, Option<&str>)| key.1.is_some_and(|partner| partner != CLOSED_FORM);
-        let held: Vec<Model> = partners.keys().filter(whole).map(|key| key.0).collect();
-        partners.retain(|(model, partner), _| partner.is_some() || !held.contains(model));
+        let compared: Vec<Model> = partners.keys().filter(whole).map(|key| key.0).collect();
+        partners.retain(|(model, partner), _| partner.is_some() || !compared.contains(model));
         FeatureCoverage { feature: feature.name, partners: partners.into_values().collect() }
     });
     Coverage { schema_version: SCHEMA_VERSION, features: features.collect() }

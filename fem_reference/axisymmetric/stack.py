@@ -109,7 +109,7 @@ class StackBody:
         inverse = np.repeat(1.0 / matrices.mass, 2)
         inverse[self.fixed] = 0.0
         step = SHARE * float(matrices.elements.critical_time_steps().min())
-        alpha, held = stack.force_per_voltage, stack.held_capacitance
+        alpha, capacitance = stack.force_per_voltage, stack.clamped_capacitance
 
         def moved(
             state: tuple[Floats, Floats, float], dt: float
@@ -125,9 +125,9 @@ class StackBody:
             half = v + 0.5 * dt * rate(u, charge)
             after, heat, taken = u + dt * half, 0.0, charge
             if supply is not None:
-                change = 0.5 * dt * (supply.elastance + 1.0 / held) / supply.resistance
+                change = 0.5 * dt * (supply.elastance + 1.0 / capacitance) / supply.resistance
                 mean = -0.5 * (u[tip] + after[tip])
-                fed = (stack.voltage + alpha * mean / held) / supply.resistance
+                fed = (stack.voltage + alpha * mean / capacitance) / supply.resistance
                 taken = ((1.0 - change) * charge + dt * fed) / (1.0 + change)
                 heat = supply.resistance * (taken - charge) ** 2 / dt
             force = 0.5 * (self.force(u[tip], charge) + self.force(after[tip], taken))
@@ -163,13 +163,13 @@ class StackBody:
         if stack.drive is None:
             return stack.blocked_force
         alpha = stack.force_per_voltage
-        return alpha * (charge + alpha * tip) / stack.held_capacitance
+        return alpha * (charge + alpha * tip) / stack.clamped_capacitance
 
     def voltage(self, node: int) -> structures.Voltage:
         """For the time loop, from the touch on; ``node`` of the cap in the system."""
         stack, supply, made = self.stack, self.stack.drive, structures.Voltage()
         made.node, made.force_per_voltage = node, stack.force_per_voltage
-        made.capacitance, made.source = stack.held_capacitance, stack.voltage
+        made.capacitance, made.source = stack.clamped_capacitance, stack.voltage
         if supply is not None:
             made.resistance, made.elastance = supply.resistance, supply.elastance
         made.charge = self.touch.charge
@@ -179,7 +179,7 @@ class StackBody:
         """Energy that buffer or source have lost, J; ``extension`` of the tip, m."""
         stack = self.stack
         if stack.drive is None:
-            charge = stack.held_capacitance * stack.voltage + stack.force_per_voltage * extension
+            charge = stack.clamped_capacitance * stack.voltage + stack.force_per_voltage * extension
             return stack.voltage * charge
         charge = float(voltage.charge)
         return stack.voltage * charge - 0.5 * stack.drive.elastance * charge**2

@@ -81,11 +81,11 @@ class AxisymmetricSystem:
         return np.zeros(0, dtype=np.int64)
 
     @property
-    def held(self) -> Mask:
+    def supported(self) -> Mask:
         """(n,) nodes of the support."""
-        held = np.zeros(self.mass.size, dtype=bool)
-        held[self.supports] = True
-        return held
+        supported = np.zeros(self.mass.size, dtype=bool)
+        supported[self.supports] = True
+        return supported
 
     def element_time_steps(self) -> Floats:
         """(m,) critical time step of each element alone, s."""

@@ -245,8 +245,8 @@ class SerialLoop(Loop):
         system, arrays = self.system, kernel.Arrays()
         kept = np.concatenate([system.owned, system.ghosts])
         # The supports' share of a node is its own process'.
-        held = system.held[kept] & (np.arange(kept.size) < system.owned.size)
-        self.divided = self._stiffness.divided(element, node[kept], held, self.threads, arrays)
+        supported = system.supported[kept] & (np.arange(kept.size) < system.owned.size)
+        self.divided = self._stiffness.divided(element, node[kept], supported, self.threads, arrays)
         made = self.divided.parts
         parts = (structures.PARTS[self.components] * len(made))(*made)
         self._state.levels = len(made) // self.threads

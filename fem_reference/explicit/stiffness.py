@@ -43,7 +43,7 @@ class Stiffness(Protocol):
         """(C n,) of K, N/m."""
 
     def divided(
-        self, element: Ints, node: Ints, held: Mask, threads: int, arrays: Arrays
+        self, element: Ints, node: Ints, supported: Mask, threads: int, arrays: Arrays
     ) -> Divided:
         """Divide K for the compiled loop, which reads what ``arrays`` keeps.
 

@@ -39,7 +39,7 @@ class SolidSystem:
         self.velocity = np.concatenate(
             [np.tile(body.velocity, (body.mesh.points.shape[0], 1)) for body in bodies]
         )
-        self.held = np.ones(self.mass.size, dtype=bool)
+        self.supported = np.ones(self.mass.size, dtype=bool)
         self.element_nodes = np.concatenate(
             [body.mesh.cells + offset for body, offset in zip(bodies, self.first, strict=False)]
         )

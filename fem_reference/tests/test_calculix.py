@@ -90,8 +90,8 @@ def test_a_thin_plate_vibrates_as_kirchhoff_says(
     mesh = mesh_plate(plate, MeshSettings(0.0008, 1, 0.0008, 0.0004, 1.0, 1.0))
     plane = quadratic(mesh)
     rim = np.flatnonzero(plane.points[:, 0] > plate.radius * (1.0 - 1e-9))
-    held = rim if edge == "clamped" else np.zeros(0, dtype=np.int64)
-    deck = Deck([Part("PLATE", wedge(plane, 1, 1), steel, held, held)])
+    fixed = rim if edge == "clamped" else np.zeros(0, dtype=np.int64)
+    deck = Deck([Part("PLATE", wedge(plane, 1, 1), steel, fixed, fixed)])
     ran = program.run(deck.modes(2), tmp_path / "job", lambda _: False)
     found = MILLI * frequencies(ran)[1 if edge == "free" else 0]
     exact = eigenvalue / (2.0 * math.pi * plate.radius**2)

@@ -73,9 +73,9 @@ def test_ledger_up_to_the_touch(drive: Supply | None) -> None:
         assert 6e-6 / touch.time == pytest.approx(STACK.step_speed, rel=0.06)
         return
     taken = STACK.voltage * touch.charge - 0.5 * drive.elastance * touch.charge**2
-    voltage = (touch.charge + STACK.force_per_voltage * u[-1]) / STACK.held_capacitance
-    held = 0.5 * STACK.held_capacitance * voltage**2 + touch.work
-    assert taken == pytest.approx(held + touch.heat, rel=1e-3)
+    voltage = (touch.charge + STACK.force_per_voltage * u[-1]) / STACK.clamped_capacitance
+    stored = 0.5 * STACK.clamped_capacitance * voltage**2 + touch.work
+    assert taken == pytest.approx(stored + touch.heat, rel=1e-3)
 
 
 def test_a_plate_out_of_reach_is_reported() -> None:

@@ -59,13 +59,13 @@ def test_fewer_than_four_meshes_are_refused() -> None:
 def test_band_holds_the_limit_of_scattered_sequences(order: float, scatter_order: float) -> None:
     """With scatter a third as large as the error: 95 of 100 bands hold and are no barn doors."""
     random = np.random.default_rng(11)
-    held, widths = 0, []
+    covered, widths = 0, []
     for _ in range(400):
         values = 0.3 * SIZES**order + 0.1 * SIZES**scatter_order * random.standard_normal(5)
         estimate = least_squares(values, SIZES)
-        held += abs(values[0]) <= estimate.band
+        covered += abs(values[0]) <= estimate.band
         widths.append(estimate.band)
-    assert held >= 0.95 * 400
+    assert covered >= 0.95 * 400
     assert np.median(widths) < 3.5 * 0.3
 
 

@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn every_impact_is_held_against_the_reference_by_one_bound() {
+    fn every_impact_is_compared_with_the_reference_by_one_bound() {
         let bound = |width| Tolerance { relative: Some(width), ..Tolerance::default() };
         let (theirs, ours) = (impact(0.65, 5e-5, Some(5e-6)), impact(0.66, 5.4e-5, None));
         let verdict = |width| {

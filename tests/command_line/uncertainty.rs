@@ -56,7 +56,7 @@ fn what_can_t_be_sampled_is_refused() {
 }
 
 #[test]
-fn differences_are_held_against_what_the_inputs_leave_open() {
+fn differences_are_compared_with_the_input_uncertainty() {
     let folder = tempfile::tempdir().unwrap();
     let compared = |scene: &str, out: &str| {
         json(&["compare", scene, "--models", "B,C", "--json", "--out", text(&folder.path().join(out))])

@@ -101,13 +101,13 @@ fn the_history_of_an_impact_that_nothing_remembers_is_the_elastic_one() {
 /// problem, J. Mech. Phys. Solids 8, 1960, 219).
 #[test]
 fn a_viscoelastic_sphere_rebounds_as_hunter_says() {
-    let held = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
+    let rigid_plate = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     let mut setup = common::scaled_plate(0.01, 0.55);
     setup.plate.material.youngs_modulus = 1e17;
-    let duration = setup.rigid_system(&held, [0.0; 2]).hertz_impact().duration();
+    let duration = setup.rigid_system(&rigid_plate, [0.0; 2]).hertz_impact().duration();
     for ratio in [0.01, 0.02] {
         setup.outer.material.relaxation = vec![Relaxation { ratio: 1.0, time: duration / ratio }];
-        let system = setup.rigid_system(&held, [0.0; 2]);
+        let system = setup.rigid_system(&rigid_plate, [0.0; 2]);
         let result = run(&setup, &system);
         let lost = 1.0 - result.velocity[0] / setup.outer.speed;
         // the next order in T/tau is left out
@@ -120,17 +120,17 @@ fn a_viscoelastic_sphere_rebounds_as_hunter_says() {
 /// which Jackson, Green & Marghitu's law (Nonlinear Dynamics 60, 2010, 217) differs by 1 to 8 %; the size of the sphere has no part in it.
 #[test]
 fn a_yielding_sphere_rebounds_as_in_finite_elements() {
-    let held = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
+    let rigid_plate = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     let restitution = |radius: f64, ratio: f64| {
         let mut setup = common::scaled_plate(radius, 1.0);
         setup.plate.material.youngs_modulus = 1e17;
         yielding(600e6)(&mut setup.outer.material);
-        let system = setup.rigid_system(&held, [0.0; 2]);
+        let system = setup.rigid_system(&rigid_plate, [0.0; 2]);
         let critical = setup.memory(&system).unwrap().unwrap().critical_forces([0.0; 2])[0];
         // Hertz: 2/5 F_c x_c is the energy at the onset
         let energy = 0.4 * critical * system.laws[0].approach(critical);
         setup.outer.speed = ratio * (2.0 * energy / system.masses[0]).sqrt();
-        let system = setup.rigid_system(&held, [0.0; 2]);
+        let system = setup.rigid_system(&rigid_plate, [0.0; 2]);
         run(&setup, &system).velocity[0] / setup.outer.speed
     };
     for (ratio, found) in

@@ -55,7 +55,7 @@ impl MovingBody {
 
     /// Both as rigid bodies; a bender is none.
     pub fn both_rigid(outer: &Outer, inner: &Inner) -> [Self; 2] {
-        debug_assert!(!outer.shape.is_held(), "a bender or a stack is no rigid body");
+        debug_assert!(!outer.shape.is_mounted(), "a bender or a stack is no rigid body");
         [Self::rigid_outer(outer), Self::inner(inner)]
     }
 

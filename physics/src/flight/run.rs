@@ -25,7 +25,7 @@ pub enum Ending {
     /// It comes to rest in a hollow that is no seat, at this x in m.
     Hollow(f64),
     /// Friction holds it at this x in m.
-    Held(f64),
+    Stuck(f64),
     /// It still moves at the end time.
     Moves,
     /// It still bounces after more touches than anybody can follow.
@@ -48,7 +48,7 @@ impl Ending {
             Ending::Hollow(x) => {
                 Some(format!("the sphere comes to rest outside both seats, at x = {}", mm(*x)))
             }
-            Ending::Held(x) => Some(format!("friction holds the sphere on its way, at x = {}", mm(*x))),
+            Ending::Stuck(x) => Some(format!("friction holds the sphere on its way, at x = {}", mm(*x))),
             Ending::Moves => Some(
                 "the sphere still moves at the flight's `end_time`, with energy to leave every seat".into(),
             ),
@@ -216,10 +216,10 @@ impl FlightRun<'_> {
         let (setup, state) = (self.setup, self.state);
         let pull = setup.field.acceleration(setup.mass, state.time, state.place);
         let bounce = BOUNCE * setup.radius;
-        let mut held: Vec<(Track, f64)> = Vec::new();
+        let mut pressing: Vec<(Track, f64)> = Vec::new();
         for wall in 0..setup.chamber.walls() {
             let feature = setup.chamber.nearest(wall, state.place).feature;
-            if setup.chamber.gap(wall, state.place) > bounce || held.iter().any(|(t, _)| t.feature == feature)
+            if setup.chamber.gap(wall, state.place) > bounce || pressing.iter().any(|(t, _)| t.feature == feature)
             {
                 continue;
             }
@@ -228,11 +228,11 @@ impl FlightRun<'_> {
             let [away, along] = [normal, super::track::tangent(normal)].map(|n| state.velocity.dot(&n));
             let pressed = -pull.dot(&normal) - along * along * track.curvature();
             if pressed > 0.0 && away * away < 2.0 * pressed * bounce {
-                held.push((track, pressed));
+                pressing.push((track, pressed));
             }
         }
-        held.sort_by(|a, b| b.1.total_cmp(&a.1));
-        self.mode = match held[..] {
+        pressing.sort_by(|a, b| b.1.total_cmp(&a.1));
+        self.mode = match pressing[..] {
             [] => MotionMode::Free,
             [(a, _), (b, _), ..] if state.velocity.norm_squared() < 2.0 * pull.norm() * bounce => {
                 let normals = [a, b].map(|track| track.normal(track.along(state.place)));
@@ -294,7 +294,7 @@ impl FlightRun<'_> {
             ([true, _], _) => Ending::Seat(Seat::Same),
             ([_, true], _) => Ending::Seat(Seat::Other),
             (_, MotionMode::Wedged(..)) => Ending::Hollow(place.x),
-            _ => Ending::Held(place.x),
+            _ => Ending::Stuck(place.x),
         }
     }
 }

@@ -38,14 +38,14 @@ pub(crate) fn of(coverage: &Coverage, standing: &[Standing]) -> String {
 
 /// How many features have a partner, and which have none.
 fn description(coverage: &Coverage) -> String {
-    let is_held = |feature: &&FeatureCoverage| feature.partners.iter().any(|p| p.partner.is_some());
-    let (held, alone): (Vec<_>, Vec<_>) = coverage.features.iter().partition(is_held);
+    let is_compared = |feature: &&FeatureCoverage| feature.partners.iter().any(|p| p.partner.is_some());
+    let (compared, alone): (Vec<_>, Vec<_>) = coverage.features.iter().partition(is_compared);
     let names: Vec<&str> = alone.iter().map(|feature| feature.feature).collect();
     let rest = match names.len() {
         0 => "every one is compared with something independent".to_owned(),
         _ => format!(
             "{} of them are compared with something independent; not: {}",
-            held.len(),
+            compared.len(),
             names.join(", ")
         ),
     };
@@ -149,7 +149,7 @@ mod tests {
     /// Every cell says what there is, a feature without partner that it has none.
     #[test]
     fn cells_have_the_largest_difference_of_a_model_and_the_nearest_model_of_a_comparator() {
-        let held = FeatureCoverage {
+        let compared = FeatureCoverage {
             feature: "gap",
             partners: vec![
                 entry("A", Some("axisymmetric"), 0.5),
@@ -159,23 +159,23 @@ mod tests {
                 entry("B", Some(CLOSED_FORM), 1e-9),
             ],
         };
-        let of_c = of_model(&held, "C").into_string();
+        let of_c = of_model(&compared, "C").into_string();
         assert!(
             of_c.contains("3.0 %") && of_c.contains("± 0.20 %") && of_c.contains("inner force, peak"),
             "{of_c}"
         );
-        assert!(of_model(&held, "B").into_string().contains("not compared"));
-        let axisymmetric = of_comparator(&with(&held, |name| name == "axisymmetric"), &["here"]).into_string();
+        assert!(of_model(&compared, "B").into_string().contains("not compared"));
+        let axisymmetric = of_comparator(&with(&compared, |name| name == "axisymmetric"), &["here"]).into_string();
         assert!(axisymmetric.starts_with("C: ") && axisymmetric.contains("2 scenes"), "{axisymmetric}");
         assert!(
             axisymmetric.contains("<a href=\"here.html\">here</a>")
                 && axisymmetric.contains("<li>elsewhere</li>")
         );
-        let exact = of_comparator(&with(&held, |name| name == CLOSED_FORM), &[]).into_string();
+        let exact = of_comparator(&with(&compared, |name| name == CLOSED_FORM), &[]).into_string();
         assert!(exact.contains("&lt; 0.00010 %") && !exact.contains('±'), "{exact}");
         let alone = FeatureCoverage { feature: "drag", partners: vec![entry("B", None, 0.0)] };
         assert!(of_model(&alone, "A").into_string().contains("not for it"));
-        let coverage = Coverage { schema_version: 1, features: vec![held, alone] };
+        let coverage = Coverage { schema_version: 1, features: vec![compared, alone] };
         assert_eq!(
             description(&coverage),
             "2 features that a scene can have; 1 of them are compared with something independent; not: drag."

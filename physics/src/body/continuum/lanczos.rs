@@ -245,8 +245,8 @@ mod tests {
         for (parity, free) in
             [(Parity::Bending, true), (Parity::Bending, false), (Parity::Longitudinal, false)]
         {
-            let held = |[r, _]: [f64; 2]| [!free && r == 1.0; 2];
-            let body = HalfBody::new(&plate, &matrices, parity, held, free).unwrap();
+            let fixed = |[r, _]: [f64; 2]| [!free && r == 1.0; 2];
+            let body = HalfBody::new(&plate, &matrices, parity, fixed, free).unwrap();
             let modes = lowest_modes(&body, 15, f64::INFINITY).unwrap();
             for (found, expected) in modes.omega.iter().zip(dense(&body)) {
                 assert_relative_eq!(*found, expected, max_relative = 1e-9);

@@ -238,16 +238,16 @@ fn friction_of_the_spring_blocks_the_sphere_in_the_middle() {
     let ends = |setup: &Setup, speed: f64| {
         fly(setup, &Landscape::new(setup).expect("two seats"), &along(speed), false).ending
     };
-    let held = (0..200).filter(|k| {
+    let stuck = (0..200).filter(|k| {
         let ending = ends(&blocked, least * (0.9 + 0.005 * f64::from(*k)));
         // held where the spring's push along the floor is below 5 % of that on it
         let in_the_middle = |x: f64| x.abs() <= 0.05 * 5e-3 * (1.0 + 1e-9);
-        if let Ending::Held(x) = ending {
+        if let Ending::Stuck(x) = ending {
             assert!(in_the_middle(x), "{x}")
         }
-        matches!(ending, Ending::Held(_))
+        matches!(ending, Ending::Stuck(_))
     });
-    assert!(held.count() > 20, "friction holds it in a band of speeds");
+    assert!(stuck.count() > 20, "friction holds it in a band of speeds");
     for cured in [rocker(0.3, 0.3, 0.0), rocker(0.3, 0.0, 0.05)] {
         for k in 0..200 {
             let ending = ends(&cured, least * (0.9 + 0.005 * f64::from(k)));

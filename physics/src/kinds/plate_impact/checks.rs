@@ -99,8 +99,8 @@ fn efficiency(setup: &PlateImpact, summary: &Summary) -> Option<Statement> {
     let mass_ratio = inner.shape.mass(&inner.material) / outer.shape.mass(&outer.material);
     let along = summary.sideways.map_or(0.0, |sideways| sideways.inner_tangential_velocity_final);
     let efficiency = mass_ratio * (velocity.powi(2) + along.powi(2)) / outer.speed.powi(2);
-    let is_held = outer.shape.is_held();
-    (!is_held).then(|| Statement::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency))
+    let is_mounted = outer.shape.is_mounted();
+    (!is_mounted).then(|| Statement::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency))
 }
 
 /// Momentum against impulse and path against velocity.
@@ -109,7 +109,7 @@ fn balances(setup: &PlateImpact, summary: &Summary, history: &History) -> Vec<St
     let interval = summary.sample_interval.unwrap_or(0.0);
     let (outer, inner) = (&setup.outer, &setup.inner);
     // a bender's clamp or a stack's base has a part in its momentum; in a fluid more than the contact force acts on the inner body
-    let outer_mass = (!outer.shape.is_held()).then(|| outer.shape.mass(&outer.material));
+    let outer_mass = (!outer.shape.is_mounted()).then(|| outer.shape.mass(&outer.material));
     let inner_mass = setup.fluid.is_none().then(|| inner.shape.mass(&inner.material));
     let momentum = |(body, mass, sign): (&str, Option<f64>, f64)| {
         let (velocity, force) = (of(history, body, "velocity")?, of(history, body, "force")?);

@@ -98,7 +98,7 @@ pub(super) fn choose(
     end_time: Option<f64>,
 ) -> Result<Option<(Joined, Choice)>> {
     let plate = &setup.plate;
-    if setup.fluid.is_some() || setup.outer.shape.is_held() || !holds(setup, [0.0; 2]) {
+    if setup.fluid.is_some() || setup.outer.shape.is_mounted() || !holds(setup, [0.0; 2]) {
         return Ok(None);
     }
     let mut modes = bending::modes(plate, FIRST);

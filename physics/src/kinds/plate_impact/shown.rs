@@ -40,10 +40,10 @@ pub(super) fn shown(setup: &PlateImpact, history: &History) -> Table {
     set("inner_velocity_final", inner);
     let mass_ratio =
         setup.inner.shape.mass(&setup.inner.material) / setup.outer.shape.mass(&setup.outer.material);
-    let is_held = setup.outer.shape.is_held();
+    let is_mounted = setup.outer.shape.is_mounted();
     let efficiency = |velocity: f64| mass_ratio * (velocity / setup.outer.speed).powi(2);
     // the motion along the plate is no curve
-    set("efficiency", inner.filter(|_| !is_held && setup.outer.angle == 0.0).map(efficiency));
+    set("efficiency", inner.filter(|_| !is_mounted && setup.outer.angle == 0.0).map(efficiency));
     table
 }
 

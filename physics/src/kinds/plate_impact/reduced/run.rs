@@ -77,7 +77,7 @@ impl Reduced {
     fn elastic_limit(&self, options: &Options) -> Result<Option<ElasticLimit>> {
         let setup = self.scene.plate_impact()?;
         let materials = setup.materials();
-        let covered = !setup.outer.shape.is_held()
+        let covered = !setup.outer.shape.is_mounted()
             && setup.outer.is_centred()
             && materials.iter().all(|m| m.relaxation.is_empty());
         let limit = |onset: OnsetOfYield| {
