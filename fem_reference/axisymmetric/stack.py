@@ -29,7 +29,7 @@ LONGEST = 40.0
 
 
 @dataclass(frozen=True)
-class Touch:
+class FirstContact:
     """The stack when its tip touches the plate."""
 
     time: float
@@ -96,7 +96,7 @@ class StackBody:
         )
 
     @cached_property
-    def touch(self) -> Touch:
+    def first_contact(self) -> FirstContact:
         """Switched on at rest, when the tip has come as far as the plate.
 
         Raises:
@@ -104,7 +104,7 @@ class StackBody:
         """
         stack, still = self.stack, np.zeros((self.count, 2))
         if stack.gap == 0.0:
-            return Touch(0.0, still, still, 0.0, 0.0, 0.0)
+            return FirstContact(0.0, still, still, 0.0, 0.0, 0.0)
         matrices, supply, tip = self.matrices, stack.drive, 2 * self.count - 1
         inverse = np.repeat(1.0 / matrices.mass, 2)
         inverse[self.fixed] = 0.0
@@ -146,7 +146,7 @@ class StackBody:
                     low, high = (low, share) if -after[0][tip] >= stack.gap else (share, high)
                 work, heat = work + after[3], heat + after[4]
                 shape = (self.count, 2)
-                return Touch(
+                return FirstContact(
                     *(time + share * step, after[0].reshape(shape), after[1].reshape(shape)),
                     *(after[2], work, heat),
                 )
@@ -172,7 +172,7 @@ class StackBody:
         made.capacitance, made.source = stack.clamped_capacitance, stack.voltage
         if supply is not None:
             made.resistance, made.elastance = supply.resistance, supply.elastance
-        made.charge = self.touch.charge
+        made.charge = self.first_contact.charge
         return made
 
     def taken(self, voltage: structures.Voltage, extension: float) -> float:

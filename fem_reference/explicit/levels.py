@@ -22,7 +22,7 @@ BUFFER = 2
 MOST_LEVELS = 5
 
 
-def graded_levels(steps: Floats, nodes: Ints, touching: npt.NDArray[np.bool_], most: int) -> Ints:
+def graded_levels(steps: Floats, nodes: Ints, contact_nodes: npt.NDArray[np.bool_], most: int) -> Ints:
     """(m,) level of each element of any mesh.
 
     Args:
@@ -33,13 +33,13 @@ def graded_levels(steps: Floats, nodes: Ints, touching: npt.NDArray[np.bool_], m
     """
     octaves = np.floor(np.log2(np.maximum(LEVEL_MARGIN * steps, 1.0)))
     level = np.minimum(octaves, max(0, most - 1)).astype(np.int64)
-    level[touching[nodes].any(axis=1)] = 0
+    level[contact_nodes[nodes].any(axis=1)] = 0
     # A level begins only `BUFFER` layers behind the elements two levels faster, and not within
     # `BUFFER` layers of an element that is too fast for it.
     for bound in range(int(level.max())):
         near = level <= bound
         for _ in range(BUFFER):
-            reached = np.zeros(touching.size, dtype=bool)
+            reached = np.zeros(contact_nodes.size, dtype=bool)
             reached[nodes[near]] = True
             near = reached[nodes].any(axis=1)
         level[near & (level > bound + 1)] = bound + 1

@@ -81,16 +81,16 @@ class Loop(ABC):
         system = self.system
         if most <= 1:
             return np.zeros(system.element_nodes.shape[0], dtype=np.int64)
-        touching = np.zeros(system.mass.size, dtype=bool)
-        touching[self.problem.nodes] = True
+        contact_nodes = np.zeros(system.mass.size, dtype=bool)
+        contact_nodes[self.problem.nodes] = True
         for contact in system.matched:
-            touching[contact.candidates] = touching[contact.opposite] = True
+            contact_nodes[contact.candidates] = contact_nodes[contact.opposite] = True
         if system.film is not None:
-            touching[system.film.nodes] = True
+            contact_nodes[system.film.nodes] = True
         if system.plasticity is not None:
-            touching[system.plasticity.nodes] = True
+            contact_nodes[system.plasticity.nodes] = True
         steps = system.element_time_steps() / time_step
-        return graded_levels(steps, system.element_nodes, touching, most)
+        return graded_levels(steps, system.element_nodes, contact_nodes, most)
 
     def set_step(self, time_step: float, split: int, most_levels: int = 1) -> None:
         """Set what a run is stepped with.
@@ -140,7 +140,7 @@ class Loop(ABC):
         return float(self.problem.state.dt)
 
     @property
-    def touching(self) -> bool:
+    def is_in_contact(self) -> bool:
         """Whether any contact carried a force in the last step."""
         return any(record.force > 0.0 for record in self.problem.records())
 

@@ -102,8 +102,8 @@ def _part(
     """The part of the nodes ``inside``; ``crossing`` are the blocks between two parts."""
     present = np.zeros(inside.size, dtype=bool)
     present[blocks.row] = True
-    touched = np.flatnonzero(present & inside)
-    edge, inner = touched[border[touched]], touched[~border[touched]]
+    reached = np.flatnonzero(present & inside)
+    edge, inner = reached[border[reached]], reached[~border[reached]]
     groups = [edge[blocks.moves[edge] == moving] for moving in (False, True)] + [
         inner[(blocks.moves[inner] == moving) & (blocks.supported[inner] == hold)]
         for moving in (False, True)

@@ -395,8 +395,8 @@ def build_system(
         displacement, strike, beam = np.zeros_like(velocity), scene.outer.strike, numbers[0]
         displacement[beam], velocity[beam], tip = strike.displacement, strike.velocity, beam[-1]
     if stack is not None:
-        displacement, touch, rod = np.zeros_like(velocity), stack.touch, numbers[0]
-        displacement[rod], velocity[rod], tip = touch.displacement, touch.velocity, rod[-1]
+        displacement, first_contact, rod = np.zeros_like(velocity), stack.first_contact, numbers[0]
+        displacement[rod], velocity[rod], tip = first_contact.displacement, first_contact.velocity, rod[-1]
     return AxisymmetricSystem(
         stiffness=scipy.sparse.block_diag(stiffness, format="csr"),
         points=np.concatenate(points),

@@ -14,7 +14,7 @@ from ..explicit.levels import least_at_nodes
 from ..explicit.loop import Loop, SerialLoop
 from ..explicit.parallel import ParallelLoop
 from ..explicit.partition import owners
-from ..explicit.problem import touching
+from ..explicit.problem import contact_nodes
 from ..explicit.stiffness import worthwhile
 from .elasticity import lumped_mass
 from .elements import element_time_steps, tetrahedra
@@ -60,7 +60,7 @@ class SolidSystem:
         """(m,) process of each element."""
         if self.comm.size == 1:
             return np.zeros(self.element_nodes.shape[0], dtype=np.int64)
-        near = touching(self.contacts, self.first)
+        near = contact_nodes(self.contacts, self.first)
         steps = self.element_time_steps()
         return owners(self.points, self.element_nodes, steps, near, self.comm.size)
 

@@ -71,7 +71,7 @@ def test_spheres_from_both_sides_rebound_as_mirror_images() -> None:
     assert run.rows[0, 6] == pytest.approx(0.55, rel=1e-2)
 
 
-def test_body_that_recedes_is_not_touched() -> None:
+def test_a_receding_body_has_no_contact() -> None:
     scene = parse_scene(document(inner__speed=-2.0, reference__elements_per_contact_radius=3))
     system, duration = make_system(scene)
     run = integrate(system, scene, duration)
@@ -218,7 +218,7 @@ def test_compiled_product_is_the_matrix_product(system: AxisymmetricSystem) -> N
         {"plate__damping_ratio": 0.03},
     ],
 )
-def test_nothing_touches_after_the_end_of_the_run(changes: dict[str, object]) -> None:
+def test_no_contact_after_the_end_of_the_run(changes: dict[str, object]) -> None:
     """The run ends by itself; one twice as long changes none of its results."""
     scene = parse_scene(document(reference__elements_per_contact_radius=3, **changes))
     system, duration = make_system(scene)

@@ -92,9 +92,9 @@ fn the_scene_is_drawn_to_scale_with_its_numbers() {
     assert!((number(&disc, "height") / scale / plate.thickness - 1.0).abs() < 1e-2);
     // the outer sphere touches the plate, the inner one is as far from it as the scene says
     let (top, height) = (number(&disc, "y"), number(&disc, "height"));
-    let touches = number(&above, "cy") + number(&above, "r") - top;
+    let distance = number(&above, "cy") + number(&above, "r") - top;
     let gap = number(&below, "cy") - number(&below, "r") - top - height;
-    assert!(touches.abs() < 0.1 && (gap / scale - 4e-3).abs() < 1e-4, "{touches} {gap}");
+    assert!(distance.abs() < 0.1 && (gap / scale - 4e-3).abs() < 1e-4, "{distance} {gap}");
     for fact in ["radius 33 mm", "thickness 2 mm", "simply supported", "550 mm/s", "gap 4 mm", "E 210 GPa"] {
         assert!(figure.contains(fact), "{fact}");
     }

@@ -69,7 +69,7 @@ fn values_arrive_in_si() {
 
 /// The ring's points lie on the sphere, and the sphere's normal there is that of the cone.
 #[test]
-fn the_ring_is_where_cone_and_sphere_touch() {
+fn the_ring_is_where_cone_and_sphere_meet() {
     for (tilt, aperture) in [(15.0, 120.0), (0.0, 90.0), (30.0, 60.0_f64)] {
         let mut setup = seat(VALID);
         setup.seat.tilt = f64::to_radians(tilt);

@@ -219,7 +219,7 @@ impl Circuit {
     /// The energies in the state (`q`, `v`) of the modes.
     pub fn account(&self, q: &[f64], v: &[f64]) -> Account {
         let Stack { voltage, capacitance, .. } = self.stack;
-        let (alpha, capacitance) = (self.stack.force_per_voltage(), self.stack.clamped_capacitance());
+        let (alpha, clamped) = (self.stack.force_per_voltage(), self.stack.clamped_capacitance());
         let mut volts = 0.0;
         let mut rod = vec![[0.0; 2]; self.rod.len()];
         for ((mode, q), v) in self.modes.iter().zip(q).zip(v) {
@@ -238,11 +238,11 @@ impl Circuit {
                 let still = offset * shape.tip * alpha / shape.omega.powi(2);
                 0.5 * (v * v + (shape.omega * (q + still)).powi(2))
             });
-            0.5 * capacitance * voltage * voltage + rod.sum::<f64>()
+            0.5 * clamped * voltage * voltage + rod.sum::<f64>()
         };
         let at_rest = self.final_voltage();
         let extension: f64 = rod.iter().zip(&self.rod).map(|([q, _], shape)| shape.tip * q).sum();
-        let moved = capacitance * volts + alpha * extension;
+        let moved = clamped * volts + alpha * extension;
         let charge = capacitance * at_rest + moved;
         let elastance = self.supply.elastance();
         Account {

@@ -15,7 +15,7 @@ use crate::error::Result;
 /// Touches of both contacts, steps and defects of the forces, over what they may be, up to which, and share of the outer impulse from
 /// which on that the inner body takes, an impact amplifies no errors: of 3 700 random ones none was then off by more than
 /// 31 times the tolerance, one in 150 by more than ten times.
-const FEW_TOUCHES: u32 = 2;
+const FEW_CONTACTS: u32 = 2;
 const FEW_STEPS: u64 = 160;
 const SMALL_DEFECT: f64 = 1.0 / 6.0;
 /// The same for the sum of all defects where modes are damped: there the energy, which else betrays forces that are a little wrong step
@@ -185,7 +185,7 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
         within(c.force_defect, SMALL_DEFECT) && within(c.force_defect_sum, sum)
     };
     !is_strongly_damped(system)
-        && outer.contacts + inner.contacts <= FEW_TOUCHES
+        && outer.contacts + inner.contacts <= FEW_CONTACTS
         && result.steps <= FEW_STEPS
         && result.contacts.iter().all(small)
         && !separates_slowly(result)

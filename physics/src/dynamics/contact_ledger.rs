@@ -41,7 +41,7 @@ pub struct ContactLedger {
     /// Impulse in N s below which a contact does not count as one.
     negligible: f64,
     /// Impulse when the present contact began, N s.
-    impulse_at_touch: f64,
+    impulse_at_contact: f64,
     /// Least distance from zero at which the local approach turned so far, over its largest value until then: a smaller error loses no
     /// contact and makes none.
     pub least_turn: f64,
@@ -127,9 +127,9 @@ impl ContactLedger {
     fn pass(&mut self, closed: bool, before: f64, released: impl FnOnce() -> (f64, f64)) {
         if closed && !self.closed {
             self.contacts += 1;
-            self.impulse_at_touch = before;
+            self.impulse_at_contact = before;
         } else if !closed && self.closed {
-            if self.impulse - self.impulse_at_touch <= self.negligible {
+            if self.impulse - self.impulse_at_contact <= self.negligible {
                 self.contacts -= 1;
             } else {
                 let (time, rate) = released();

@@ -121,8 +121,8 @@ impl<'a> DryStepper<'a> {
     fn fly(&mut self) -> Result<bool> {
         let system = self.solver.system;
         let (q, v) = (flat(&self.q), flat(&self.v));
-        let (flight, more) = match free_flight::next_touch(system, q, v, self.end_time - self.time)? {
-            Flight::Touch(duration) if self.time + duration < self.end_time => (duration, true),
+        let (flight, more) = match free_flight::next_contact(system, q, v, self.end_time - self.time)? {
+            Flight::Contact(duration) if self.time + duration < self.end_time => (duration, true),
             Flight::Over if self.end_time.is_infinite() => return Ok(false),
             _ => (self.end_time - self.time, false),
         };
@@ -367,15 +367,15 @@ impl Stepper for DryStepper<'_> {
 
     /// Whether the integration or the impact itself is to blame.
     fn endless(&self) -> Error {
-        let touches: u32 = self.contacts.iter().map(|contact| contact.contacts).sum();
+        let contacts: u32 = self.contacts.iter().map(|contact| contact.contacts).sum();
         let vibration = self.quickest_vibration();
         let turned = vibration * self.time;
         let sentence = format!(
-            "reduced model: no end after {} steps, {touches} contacts and {turned:.1e} rad of a vibration of {vibration:.1e} rad/s between the contacts, at t = {:.6e} s; set `run.end_time`, or take fewer modes",
+            "reduced model: no end after {} steps, {contacts} contacts and {turned:.1e} rad of a vibration of {vibration:.1e} rad/s between the contacts, at t = {:.6e} s; set `run.end_time`, or take fewer modes",
             Self::MOST_STEPS,
             self.time
         );
-        if touches > RATTLING || turned > TURN_PER_STEP * self.steps as f64 {
+        if contacts > RATTLING || turned > TURN_PER_STEP * self.steps as f64 {
             Error::BeyondModel(sentence)
         } else {
             Error::Solver(sentence)

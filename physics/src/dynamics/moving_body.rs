@@ -147,13 +147,13 @@ impl MovingBody {
             }
         };
         if stack.gap > 0.0 {
-            body.fly_to_the_touch(stack)?;
+            body.fly_to_contact(stack)?;
         }
         Ok(body)
     }
 
     /// Moves on, freely, until the tip touches the plate.
-    fn fly_to_the_touch(&mut self, stack: &Stack) -> Result<()> {
+    fn fly_to_contact(&mut self, stack: &Stack) -> Result<()> {
         // |x''| of the tip is bounded by the modes' amplitudes
         let bound: f64 = (0..self.tip.len())
             .map(|k| {

@@ -26,7 +26,7 @@ pub use chamber::{Chamber, TooNarrow};
 pub use field::{Excitation, Field, SphereDrag, Wave};
 pub use judged::{Judged, Landing, Scatter, judge, least_shift, map_of_landings};
 pub use landscape::{Landscape, Saddle};
-pub use run::{Ending, Flight, Touch, fly};
+pub use run::{Ending, Flight, FlightContact, fly};
 pub use spring::Spring;
 pub use vibration::{Thresholds, thresholds};
 

@@ -61,7 +61,7 @@ impl Ending {
 
 /// The first touch after a launch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
+pub struct FlightContact {
     /// Time in s.
     pub time: f64,
     /// Centre of the sphere in m.
@@ -76,9 +76,9 @@ pub struct Flight {
     /// Time in s at which that was certain.
     pub time: f64,
     /// The first touch after the launch, if there was one.
-    pub first_touch: Option<Touch>,
+    pub first_contact: Option<FlightContact>,
     /// Number of touches.
-    pub touches: u32,
+    pub contacts: u32,
     /// States on the way, if they were asked for: after every step and at every touch.
     pub path: Vec<State>,
 }
@@ -121,7 +121,7 @@ pub(super) fn moved(
     mode: MotionMode,
     request: MotionRequest,
 ) -> Flight {
-    let mut running = FlightRun { setup, landscape, state: start, mode, events: 0, touches: 0, first: None };
+    let mut running = FlightRun { setup, landscape, state: start, mode, events: 0, contacts: 0, first: None };
     let mut path = if request.path { vec![start] } else { Vec::new() };
     let side = request.beyond.map(|x| (start.place.x - x).signum());
     for _ in 0..MOST_STEPS {
@@ -132,12 +132,12 @@ pub(super) fn moved(
             path.push(running.state);
         }
         if let Some(ending) = ending {
-            let FlightRun { state, first, touches, .. } = running;
-            return Flight { ending, time: state.time, first_touch: first, touches, path };
+            let FlightRun { state, first, contacts, .. } = running;
+            return Flight { ending, time: state.time, first_contact: first, contacts, path };
         }
     }
-    let FlightRun { state, first, touches, .. } = running;
-    Flight { ending: Ending::Moves, time: state.time, first_touch: first, touches, path }
+    let FlightRun { state, first, contacts, .. } = running;
+    Flight { ending: Ending::Moves, time: state.time, first_contact: first, contacts, path }
 }
 
 struct FlightRun<'a> {
@@ -146,8 +146,8 @@ struct FlightRun<'a> {
     state: State,
     mode: MotionMode,
     events: u32,
-    touches: u32,
-    first: Option<Touch>,
+    contacts: u32,
+    first: Option<FlightContact>,
 }
 
 impl FlightRun<'_> {
@@ -172,10 +172,10 @@ impl FlightRun<'_> {
     fn go(&mut self) -> Option<Ending> {
         match self.mode {
             MotionMode::Free => {
-                let (state, touched) = self.setup.fly_on(&self.state);
+                let (state, met) = self.setup.fly_on(&self.state);
                 self.state = state;
-                if let Some(wall) = touched {
-                    self.touch(wall);
+                if let Some(wall) = met {
+                    self.record_contact(wall);
                 }
                 None
             }
@@ -189,7 +189,7 @@ impl FlightRun<'_> {
                     Change::Passes(feature) => {
                         self.mode = MotionMode::On(Track::of(&self.setup.chamber, feature))
                     }
-                    Change::Touches(wall) => self.touch(wall),
+                    Change::Meets(wall) => self.record_contact(wall),
                     Change::Rests => return Some(self.at_rest()),
                 }
                 None
@@ -199,14 +199,14 @@ impl FlightRun<'_> {
     }
 
     /// Touches `wall`, and finds out what follows.
-    fn touch(&mut self, wall: usize) {
+    fn record_contact(&mut self, wall: usize) {
         let nearest = self.setup.chamber.nearest(wall, self.state.place);
         let normal = (self.state.place - nearest.point).normalize();
         if self.state.time > 0.0 && self.first.is_none() {
-            self.first = Some(Touch { time: self.state.time, place: self.state.place });
+            self.first = Some(FlightContact { time: self.state.time, place: self.state.place });
         }
         (self.state.velocity, self.state.spin) = rebound(self.setup, &self.state, normal);
-        self.touches += 1;
+        self.contacts += 1;
         self.events += 1;
         self.settle();
     }
@@ -310,7 +310,7 @@ impl Setup {
             state,
             mode: MotionMode::Free,
             events: 0,
-            touches: 0,
+            contacts: 0,
             first: None,
         };
         running.settle();

@@ -90,8 +90,8 @@ impl ReducedModels for Plates {
                 1e3 * outcome.summary.solve_seconds
             ));
             if let Some(choice) = &outcome.summary.choice {
-                let in_words = requested_model::in_words(choice);
-                context.note(format_args!("{}: model {}, {choice_in_words}", scene.name, body.model()));
+                let in_words = requested_model::choice_in_words(choice);
+                context.note(format_args!("{}: model {}, {in_words}", scene.name, body.model()));
             }
             Ok(outcome)
         });

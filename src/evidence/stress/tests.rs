@@ -19,7 +19,7 @@ fn error(case: &StressCase, result: &Integration) -> f64 {
 
 /// The ninth touch of the light inner body lasts 0.2 % of a contact, between two Gauss points of a step.
 #[test]
-fn a_short_touch_is_not_passed() {
+fn a_short_contact_is_not_missed() {
     let case = draw(242_304);
     let result = integrate(&case.dry.system, None, &options(&case, 1e-7)).unwrap();
     assert_eq!(result.contacts[1].contacts, 9);
@@ -120,7 +120,7 @@ fn force_peaks_and_the_momentum_of_films_are_within_their_bounds() {
 
 /// From a guess in which the inner contact is open the first sweep closes it, far from where it settles.
 #[test]
-fn a_sweep_across_a_touch_does_not_count_as_settled() {
+fn an_iteration_across_a_contact_is_not_converged() {
     assert_eq!(run(1, 7_000_019_122, &|| ()).unwrap().failures, []);
 }
 
@@ -145,7 +145,7 @@ fn a_force_far_below_the_others_is_solved_for_itself() {
 
 /// Vibrations bring the outer body and the plate together once more, between the points of a step.
 #[test]
-fn a_short_touch_in_a_fluid_is_not_passed() {
+fn a_short_contact_in_a_fluid_is_not_missed() {
     let report = run(1, 20_105_727, &|| ()).unwrap();
     assert_eq!((report.failures, report.wet_compared), (vec![], 1));
 }

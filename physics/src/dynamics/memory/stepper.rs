@@ -175,7 +175,7 @@ impl<'a> MemoryStepper<'a> {
             self.x[i] = self.y[i] + self.offset[i] - beneath(0) - beneath(1);
         }
         self.remember(self.x, [0.0; 2], self.patch);
-        self.past = [0, 1].map(|i| (self.x[i] - self.bodies.contacts[i].touch()).min(-f64::MIN_POSITIVE));
+        self.past = [0, 1].map(|i| (self.x[i] - self.bodies.contacts[i].contact_approach()).min(-f64::MIN_POSITIVE));
         self.step_length.reset();
         self.level = 0;
         self.bodies.prepare(self.h);
@@ -261,7 +261,7 @@ impl<'a> MemoryStepper<'a> {
         let mean = mean(self.step_force.felt([self.force, force], acting));
         for i in 0..2 {
             // touch and release are where the force begins and ends
-            let past = x[i] - self.bodies.contacts[i].touch();
+            let past = x[i] - self.bodies.contacts[i].contact_approach();
             let past =
                 if force[i] > 0.0 { past.max(f64::MIN_POSITIVE) } else { past.min(-f64::MIN_POSITIVE) };
             let forces = [mean[i], force[i]];

@@ -12,7 +12,7 @@ mod guess;
 mod run;
 mod solve;
 mod table;
-mod touch_between;
+mod contact_between;
 
 pub use fluid_forces::{FluidForces, FluidLoad, Tangent};
 pub use run::integrate;

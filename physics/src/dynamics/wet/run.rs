@@ -205,7 +205,7 @@ impl WetStepper<'_> {
             let excess = (self.defect(h, scale) / self.defect_bound)
                 .max(self.energy.excess(account.energy_error, h, account.rounding))
                 .max(self.force_excess(force_defect, scale))
-                .max(self.passed_touch(h, scale));
+                .max(self.missed_contact(h, scale));
             if excess > 1.0 {
                 self.length.shorten(excess);
                 continue;

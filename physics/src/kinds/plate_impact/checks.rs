@@ -48,18 +48,18 @@ fn start(setup: &PlateImpact, history: &History) -> Vec<Statement> {
         let motion = of(history, body, "displacement")?;
         Some(Statement::new(format!("{body}_displacement_start"), "m", motion[0], 0.0, 1e-3 * peak(motion)))
     };
-    let touch = |force: &[f64]| {
+    let contact_start = |force: &[f64]| {
         let floor = FORCE_FLOOR * peak(force);
-        let touch = force.iter().position(|&f| f > floor).map_or(f64::NAN, |k| history.time[k]);
+        let contact_start = force.iter().position(|&f| f > floor).map_or(f64::NAN, |k| history.time[k]);
         // The force of the first instant may be zero, that of the next sample is not.
         let next = history.time[2.min(history.time.len() - 1)];
-        Statement::new("outer_contact_start", "s", touch, 0.0, next)
+        Statement::new("outer_contact_start", "s", contact_start, 0.0, next)
     };
     // a stack begins at rest, or with what speed it has come to the plate
     let outer = (!matches!(setup.outer.shape, Shape::Stack(_))).then_some(("outer", -speed));
     let velocities = outer.into_iter().chain([("inner", setup.inner.speed)]).filter_map(velocity);
     let displacements = ["outer", "plate", "inner"].into_iter().filter_map(displacement);
-    velocities.chain(displacements).chain(of(history, "outer", "force").map(touch)).collect()
+    velocities.chain(displacements).chain(of(history, "outer", "force").map(contact_start)).collect()
 }
 
 /// The contact forces against what the summary states of them.

@@ -290,7 +290,7 @@ impl<'a> ChoicePlan<'a> {
 
     /// Error over what model C is estimated to lack.
     fn safety(&self) -> f64 {
-        self.by_thickness(BUILT_SAFETY) * closed_form::amplified(self.trials.predictor.touches)
+        self.by_thickness(BUILT_SAFETY) * closed_form::amplified(self.trials.predictor.repeated_contacts)
     }
 
     /// An error with what models with few modes lack and with the floor; `None` where that is not known.

@@ -45,7 +45,7 @@ const CLOSED_FORM: [f64; 2] = [5e-4, 6.0];
 /// beyond the first of either body, squared.
 const BY_CONTACT: f64 = 10.0;
 const BY_PLATE: f64 = 80.0;
-const BY_TOUCHES: f64 = 0.1;
+const BY_CONTACTS: f64 = 0.1;
 /// Error over what as many modes again change.
 pub(super) const BY_TWICE: f64 = 2.0;
 
@@ -83,8 +83,8 @@ pub(super) fn misshapen(mut body: ModalBody, plate: &Plate) -> ModalBody {
 }
 
 /// What many touches make of an error: each takes what was wrong before it further.
-pub(super) fn amplified(touches: f64) -> f64 {
-    1.0 + BY_TOUCHES * touches * touches
+pub(super) fn amplified(repeated_contacts: f64) -> f64 {
+    1.0 + BY_CONTACTS * repeated_contacts * repeated_contacts
 }
 
 /// Model C of `setup` with as few modes as are estimated to be enough for `tolerance` until `end_time` s; `None` if no number is, or
@@ -113,11 +113,11 @@ pub(super) fn choose(
     let Some(floor) = floor else { return Ok(None) };
     let approach = look.laws[0].approach(predictor.force_peak[0]) / predictor.force_peak[0];
     let total = |lack: f64, next: &BendingMode| (lack + predictor.undamped(plate, next.omega)).hypot(floor);
-    let own = own_error(plate) * amplified(predictor.touches);
+    let own = own_error(plate) * amplified(predictor.repeated_contacts);
     let enough = |modes: &[BendingMode]| {
         let lacks = lacks(plate, modes, &predictor);
         let estimate = |(n, lack): (usize, &ModalTruncation)| {
-            (n, total(own + lack.error(approach, predictor.touches), &modes[n]))
+            (n, total(own + lack.error(approach, predictor.repeated_contacts), &modes[n]))
         };
         lacks.iter().enumerate().skip(choice::LEAST).map(estimate).find(|(_, error)| *error <= tolerance)
     };
@@ -194,11 +194,11 @@ struct ModalTruncation {
 }
 
 impl ModalTruncation {
-    /// Relative error of the forces, with the `approach` of the outer contact in m/N and so many `touches` beyond the first of either
+    /// Relative error of the forces, with the `approach` of the outer contact in m/N and so many `repeated_contacts` beyond the first of either
     /// body.
-    fn error(&self, approach: f64, touches: f64) -> f64 {
+    fn error(&self, approach: f64, repeated_contacts: f64) -> f64 {
         let once = BY_CONTACT * self.yielding / approach + BY_PLATE * self.share;
-        once * amplified(touches)
+        once * amplified(repeated_contacts)
     }
 }
 

@@ -28,7 +28,7 @@ pub(super) struct Predictor {
     /// Angular frequency in rad/s of the quicker contact, pi over the duration of a half-sine with its impulse and peak.
     contact_frequency: f64,
     /// Contacts beyond the first of either body.
-    pub(super) touches: f64,
+    pub(super) repeated_contacts: f64,
 }
 
 impl Predictor {
@@ -66,7 +66,7 @@ impl Predictor {
             patch_radius: [outer.0, inner.0],
             force_peak: [outer.2, inner.2],
             contact_frequency: outer.1.max(inner.1),
-            touches: counts.map(|count| f64::from(count.saturating_sub(1))).iter().sum(),
+            repeated_contacts: counts.map(|count| f64::from(count.saturating_sub(1))).iter().sum(),
         }
     }
 

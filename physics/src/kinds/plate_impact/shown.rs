@@ -22,9 +22,9 @@ pub(super) fn shown(setup: &PlateImpact, history: &History) -> Table {
     for body in ["outer", "inner"] {
         let Some(force) = history.curve(&format!("{body}_force")) else { continue };
         let floor = FORCE_FLOOR * peak(force);
-        let touches = |k: usize| force[k] > floor;
-        let last = (0..force.len()).rev().find(|k| touches(*k));
-        let begins = (0..force.len()).filter(|&k| touches(k) && (k == 0 || !touches(k - 1))).count();
+        let in_contact = |k: usize| force[k] > floor;
+        let last = (0..force.len()).rev().find(|k| in_contact(*k));
+        let begins = (0..force.len()).filter(|&k| in_contact(k) && (k == 0 || !in_contact(k - 1))).count();
         let is_over = last.is_none_or(|k| k + 1 < force.len());
         set(&format!("{body}_force_peak"), Some(force.iter().fold(0.0, |a, f| f64::max(a, *f))));
         set(&format!("{body}_contact_end"), is_over.then(|| last.map_or(0.0, |k| history.time[k])));

@@ -56,7 +56,7 @@ pub struct ContactProblem<'a> {
     /// Nodes on the wrong side: in contact with a tensile force, or out of contact and too deep. Shape (n).
     pub(super) wrong: Vec<bool>,
     /// Whether a node is in contact; for [`ContactProblem::mark_wrong`]. Shape (n).
-    touching: Vec<bool>,
+    in_contact: Vec<bool>,
     /// Factor of G on the nodes `factored`, in this order.
     pub(super) factor: Cholesky,
     pub(super) factored: Vec<usize>,
@@ -110,7 +110,7 @@ impl<'a> ContactProblem<'a> {
             watch: Watch::none(n),
             gap: vec![0.0; n],
             wrong: vec![false; n],
-            touching: vec![false; n],
+            in_contact: vec![false; n],
             factor: Cholesky::with_capacity(n),
             factored: Vec::with_capacity(n),
             factor_normal: vec![Vector3::zeros(); n],
@@ -312,11 +312,11 @@ impl<'a> ContactProblem<'a> {
     /// Marks the nodes that pull and the open watched ones that are too deep; their number.
     fn mark_wrong(&mut self, balls: &[Ball]) -> usize {
         let mut count = self.mark_tensile();
-        self.touching.fill(false);
-        self.loads.active.iter().for_each(|&i| self.touching[i] = true);
+        self.in_contact.fill(false);
+        self.loads.active.iter().for_each(|&i| self.in_contact[i] = true);
         for slot in 0..self.watch.len() {
             let i = self.watch.node(slot);
-            if !self.touching[i] {
+            if !self.in_contact[i] {
                 self.look(i, balls);
                 self.wrong[i] = self.gap[i] < -self.closed;
                 count += usize::from(self.wrong[i]);
@@ -353,7 +353,7 @@ mod tests {
         let mut random = fastrand::Rng::with_seed(3);
         // the gap of a closed contact, and what the last turn of the normals changes of the indentation
         let bound = 2.0 * CLOSED * INDENTATION;
-        let mut touching = 0;
+        let mut in_contact = 0;
         for n in [1, 2, 5, 12, 40] {
             let (nodes, residual) = nodes(n, &mut random);
             let mut contact = ContactProblem::new(&nodes, INDENTATION, None);
@@ -378,11 +378,11 @@ mod tests {
                     assert!(load == 0.0 || gap < bound, "{n} nodes: force {load} over a gap of {gap}");
                     let f = contact.force_vector(i);
                     assert!(f.dot(&at) > (1.0 - 1e-6) * load * distance - 1e-12, "the force is not normal");
-                    touching += usize::from(load > 0.0);
+                    in_contact += usize::from(load > 0.0);
                 }
             }
         }
-        assert!(touching > 50, "{touching}");
+        assert!(in_contact > 50, "{in_contact}");
     }
 
     #[test]

@@ -41,15 +41,15 @@ impl ContactProblem<'_> {
         let mut survey = Survey { missed: false, needed: 0.0 };
         let mut active = 0;
         for i in 0..n {
-            let touches = self.loads.active.get(active) == Some(&i);
-            active += usize::from(touches);
+            let in_contact = self.loads.active.get(active) == Some(&i);
+            active += usize::from(in_contact);
             let ball = &balls[nodes.ball[i]];
             let displaced = Vector3::from_fn(|c, _| self.displaced[c * n + i]);
             let distance = (nodes.place[i] + displaced - ball.centre).norm();
-            let gap = if touches { 0.0 } else { distance - ball.radius };
+            let gap = if in_contact { 0.0 } else { distance - ball.radius };
             let passed = !self.watch.contains(i) && gap < -self.closed;
             survey.missed |= passed;
-            if touches || passed {
+            if in_contact || passed {
                 survey.needed = survey.needed.max(self.surveyed[i]);
             }
             self.surveyed[i] = gap;

@@ -3,7 +3,7 @@
 use super::{WetStepper, joined};
 use crate::dynamics::step_bounds::{force_scale, peak_share};
 use crate::dynamics::system::dot;
-use crate::dynamics::wet::touch_between;
+use crate::dynamics::wet::contact_between;
 use crate::numerics::stages::STAGES;
 use std::cell::LazyCell;
 
@@ -77,7 +77,7 @@ impl WetStepper<'_> {
     }
 
     /// Impulse, over what may be wrong, of a touch between the points of the step of `h` s just solved.
-    pub(super) fn passed_touch(&self, h: f64, scale: [f64; 2]) -> f64 {
+    pub(super) fn missed_contact(&self, h: f64, scale: [f64; 2]) -> f64 {
         let (system, trial) = (self.wet.system, &self.trial);
         let points = [0, 1].map(|i| {
             let open = self.force[i] == 0.0 && trial.forces[i] == [0.0; STAGES];
@@ -85,7 +85,7 @@ impl WetStepper<'_> {
         });
         let forces = LazyCell::new(|| self.wet.generalised(trial));
         let motion = |place: f64| system.modal_approach(&self.motion_at(&forces, place * h, h).0);
-        let largest = touch_between::forces(system, h, [&self.q, &self.v], points, motion);
+        let largest = contact_between::forces(system, h, [&self.q, &self.v], points, motion);
         let missed = |i: usize| largest[i] * h / (scale[i] * self.bounds.kinked);
         missed(0).max(missed(1))
     }
