@@ -77,9 +77,9 @@ def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str
     Raises:
         SolverError: there is no mpirun.
     """
-    kept = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
+    inherited = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
     if processes == 1:
-        return command, kept
+        return command, inherited
     program = launcher()
     if program is None:
         raise SolverError(
@@ -103,7 +103,7 @@ def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str
         # Somebody else needs a processor too: waiting must not keep it busy.
         settings["OMPI_MCA_mpi_yield_when_idle"] = "1"
         settings["MPIR_CVAR_POLLS_BEFORE_YIELD"] = "1"
-    return [program, "-n", str(processes), *command], {**settings, **kept}
+    return [program, "-n", str(processes), *command], {**settings, **inherited}
 
 
 def _launch(processes: int) -> None:

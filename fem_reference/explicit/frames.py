@@ -47,10 +47,10 @@ class Frames:
             return
         self.folder.mkdir(parents=True, exist_ok=True)
         np.save(self.folder / f"frame-{sample:08d}.npy", displacement)
-        for kept in self._files():
-            number = int(kept.stem.split("-")[1])
+        for path in self._files():
+            number = int(path.stem.split("-")[1])
             if self.count and number not in self.samples and number % self._stride(sample):
-                kept.unlink(missing_ok=True)
+                path.unlink(missing_ok=True)
 
     def following(self, sample: int) -> int:
         """The next sample whose frame is wanted, or one far away."""

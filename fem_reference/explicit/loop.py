@@ -50,8 +50,8 @@ class Loop(ABC):
         self.system, self.comm = system, comm
         self.components = system.points.shape[1]
         self.mass = system.mass[system.owned]
-        kept = np.concatenate([system.owned, system.ghosts])
-        rows = (self.components * kept[:, None] + np.arange(self.components)).ravel()
+        local_nodes = np.concatenate([system.owned, system.ghosts])
+        rows = (self.components * local_nodes[:, None] + np.arange(self.components)).ravel()
         own = slice(self.components * system.owned.size)
         self._inverse = system.inverse_mass[rows]
         self.rows, self.inverse = rows[own], self._inverse[own]
@@ -243,10 +243,10 @@ class SerialLoop(Loop):
     def _divide(self, element: Ints, node: Ints) -> None:
         """Let elements (m,) act and nodes (N,) move with these levels."""
         system, arrays = self.system, kernel.Arrays()
-        kept = np.concatenate([system.owned, system.ghosts])
+        local_nodes = np.concatenate([system.owned, system.ghosts])
         # The supports' share of a node is its own process'.
-        supported = system.supported[kept] & (np.arange(kept.size) < system.owned.size)
-        self.divided = self._stiffness.divided(element, node[kept], supported, self.threads, arrays)
+        supported = system.supported[local_nodes] & (np.arange(local_nodes.size) < system.owned.size)
+        self.divided = self._stiffness.divided(element, node[local_nodes], supported, self.threads, arrays)
         made = self.divided.parts
         parts = (structures.PARTS[self.components] * len(made))(*made)
         self._state.levels = len(made) // self.threads

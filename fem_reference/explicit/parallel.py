@@ -61,8 +61,8 @@ class ParallelLoop(SerialLoop):
     def _place(self) -> Ints:
         """(N,) place of each node in this process' vectors, -1: none."""
         place = np.full(self.system.mass.size, -1, dtype=np.int64)
-        kept = np.concatenate([self.system.owned, self.system.ghosts])
-        place[kept] = np.arange(kept.size)
+        local_nodes = np.concatenate([self.system.owned, self.system.ghosts])
+        place[local_nodes] = np.arange(local_nodes.size)
         return place
 
     def _sum(self, moves: Mask, stride: int) -> Sum:

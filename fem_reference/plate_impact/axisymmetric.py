@@ -37,7 +37,7 @@ from .meshing import (
     mesh_impact,
     mesh_settings,
 )
-from .repeated import Kept, strike
+from .repeated import StoredRuns, strike
 from .run import Run
 from .scene import Scene
 from .suitability import Resolution, Suitability, per_wavelength, resolution_of, within_zones
@@ -299,7 +299,7 @@ def compute(
         struck = strike(
             scene.series,
             stepper,
-            Kept(settings, attempt, [*method(scene), reach], system),
+            StoredRuns(settings, attempt, [*method(scene), reach], system),
             lambda run, motion: like is not None or suits(run, motion).accepted,
             None if like is None else len(like.runs),
         )

@@ -73,9 +73,9 @@ class SolidSystem:
 
     def operator(self) -> Tetrahedra:
         """K of this process' elements."""
-        kept = np.concatenate([self.owned, self.ghosts])
+        local_nodes = np.concatenate([self.owned, self.ghosts])
         number = np.empty(self.mass.size, dtype=np.int64)
-        number[kept] = np.arange(kept.size)
+        number[local_nodes] = np.arange(local_nodes.size)
         bodies = np.searchsorted(self._first_element(), self._mine, side="right") - 1
         materials = [body.material for body in self.model.elastic]
         lame, shear = (

@@ -244,14 +244,14 @@ def test_run_cut_short_says_so(system: AxisymmetricSystem, scene: Scene, duratio
 def test_field_is_the_state_at_its_time(
     system: AxisymmetricSystem, scene: Scene, duration: float, tmp_path: Path
 ) -> None:
-    kept: list[Frames] = []
+    recorded: list[Frames] = []
 
     def fields(interval: float) -> Frames:
-        kept.append(Frames(tmp_path, 0, (0.0, 1e-5), interval))
-        return kept[-1]
+        recorded.append(Frames(tmp_path, 0, (0.0, 1e-5), interval))
+        return recorded[-1]
 
     cut = integrate(system, scene, duration, end_time=2e-5, fields=fields)
-    (start, still), (instant, moved) = kept[0].frames()
+    (start, still), (instant, moved) = recorded[0].frames()
     assert start == 0.0 and not still.any()
     assert instant == pytest.approx(1e-5, abs=float(cut.times[1]))
     index = int(np.argmin(np.abs(cut.times - instant)))

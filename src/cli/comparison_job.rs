@@ -54,9 +54,9 @@ impl<'a> Job<'a> {
         let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
         // of all shipped scenes those are compared that have one of the models
         if arguments.scenes.is_empty() {
-            let (kept, left_out) =
+            let (supported, left_out) =
                 scenes.into_iter().partition(|(_, scene)| kinds::has_one_of(scene, &arguments.models));
-            scenes = kept;
+            scenes = supported;
             for (_, scene) in left_out {
                 context.note(format_args!("{}", crate::kinds::models_only(&scene)));
             }

@@ -89,9 +89,9 @@ mod tests {
         assert_eq!((rows[0].verdict, rows[0].uncertainty), (Verdict::Pass, Some(0.001)));
         assert_eq!(verdict(0.01)[0].verdict, Verdict::Fail);
         // what the contacts keep: the model does not tell what is locked in
-        let kept = &rows[3];
-        assert_eq!(kept.quantity, "impact_2_kept_energy");
-        assert!((kept.difference.unwrap() + 1e-6).abs() < 1e-12 && kept.uncertainty == Some(2e-6 + 1e-6));
+        let energy = &rows[3];
+        assert_eq!(energy.quantity, "impact_2_kept_energy");
+        assert!((energy.difference.unwrap() + 1e-6).abs() < 1e-12 && energy.uncertainty == Some(2e-6 + 1e-6));
         assert_eq!(rows[1].verdict, Verdict::NotGated, "a peak that neither side tells is no failure");
     }
 

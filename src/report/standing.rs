@@ -18,23 +18,23 @@ const OVERVIEW: &str = "overview";
 pub(crate) struct Standing {
     pub(crate) overview: Overview,
     /// Its entry of the document, if it was not part of this run.
-    kept: Option<Value>,
+    earlier: Option<Value>,
 }
 
 impl Standing {
     /// Whether it was not part of this run.
-    pub(crate) fn is_kept(&self) -> bool {
-        self.kept.is_some()
+    pub(crate) fn is_earlier(&self) -> bool {
+        self.earlier.is_some()
     }
 
     /// When it was compared, for a column of that name, and whether in another run than this.
     pub(crate) fn date(&self) -> String {
         let compared = self.compared();
-        if self.is_kept() { format!("{compared}, kept from an earlier run") } else { compared.to_owned() }
+        if self.is_earlier() { format!("{compared}, kept from an earlier run") } else { compared.to_owned() }
     }
 
     /// The same of one that is kept, as a sentence.
-    pub(crate) fn kept(&self) -> String {
+    pub(crate) fn earlier(&self) -> String {
         format!("Kept from an earlier run, not compared again: compared {}.", self.compared())
     }
 
@@ -59,7 +59,7 @@ struct ReportDocument {
 
 /// The scenes of `report`.
 pub(crate) fn of_run(report: &Report) -> Vec<Standing> {
-    report.scenes.iter().map(|scene| Standing { overview: Overview::of(scene), kept: None }).collect()
+    report.scenes.iter().map(|scene| Standing { overview: Overview::of(scene), earlier: None }).collect()
 }
 
 /// The scenes of `report` in the places that they had in the document in `dir`, the others there whose pages are there, and
@@ -72,7 +72,7 @@ pub(crate) fn in_folder(report: &Report, dir: &Path) -> Vec<Standing> {
         match run.iter().position(|new| new.overview.scene == overview.scene) {
             Some(place) => standing.push(run.remove(place)),
             None if dir.join(format!("{}.html", overview.scene)).is_file() => {
-                standing.push(Standing { overview, kept: Some(entry) });
+                standing.push(Standing { overview, earlier: Some(entry) });
             }
             None => {}
         }
@@ -100,13 +100,13 @@ pub(crate) fn document(report: &Report, standing: &[Standing]) -> Result<String>
     let internal = |e: serde_json::Error| Error::Internal(format!("writing the comparison as JSON: {e}"));
     let entry = |scene: &Standing| {
         let is_same = |of_run: &&SceneReport| of_run.comparison.scene == scene.overview.scene;
-        match (&scene.kept, report.scenes.iter().find(is_same)) {
+        match (&scene.earlier, report.scenes.iter().find(is_same)) {
             (None, Some(of_run)) => {
                 let mut entry = serde_json::to_value(&of_run.comparison)?;
                 entry[OVERVIEW] = serde_json::to_value(&scene.overview)?;
                 Ok(entry)
             }
-            (kept, _) => Ok(kept.clone().unwrap_or_default()),
+            (earlier, _) => Ok(earlier.clone().unwrap_or_default()),
         }
     };
     let document = ReportDocument {

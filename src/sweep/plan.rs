@@ -351,8 +351,8 @@ impl Plan {
     }
 
     /// Whether every point takes tenths of a second.
-    pub(super) fn is_dear(&self) -> bool {
-        self.series.is_dear()
+    pub(super) fn is_expensive(&self) -> bool {
+        self.series.is_expensive()
     }
 
     /// Runs point `index`. A scene that is not valid and a solver that fails are results too.

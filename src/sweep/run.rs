@@ -79,7 +79,7 @@ pub fn run(plan: &Plan, dir: &Path, shard: Shard, on_progress: &(dyn Fn(Progress
     let (finished, pending): (Vec<usize>, Vec<usize>) = points.partition(|index| done[*index].is_some());
     on_progress(Progress::Start { points: finished.len() + pending.len(), done: finished.len() });
     let log = Log::open(plan, dir, shard)?;
-    pending.par_chunks(if plan.is_dear() { 1 } else { BATCH }).try_for_each(|chunk| {
+    pending.par_chunks(if plan.is_expensive() { 1 } else { BATCH }).try_for_each(|chunk| {
         let (mut text, mut count, mut since) = (String::new(), 0, Instant::now());
         for (k, index) in chunk.iter().enumerate() {
             plan.evaluate(*index).append_to(&mut text);

@@ -99,21 +99,21 @@ fn comparisons_are_stored_with_the_references() {
         let file = file.unwrap();
         std::fs::copy(file.path(), entry.join(file.file_name())).unwrap();
     }
-    let kept = store.join("validated.jsonl");
+    let record = store.join("validated.jsonl");
     let out = dir.path().join("report").display().to_string();
     let compare = |resolution: &str, models: &str| {
         let store = store.display().to_string();
         let arguments =
             [scene, "--resolution", resolution, "--models", models, "--out", &out, "--store", &store];
         document("compare", &arguments);
-        std::fs::read_to_string(&kept).ok()
+        std::fs::read_to_string(&record).ok()
     };
     assert_eq!(compare("paper", "C"), None, "its reference is not of this store");
     let one = compare("coarse", "C").unwrap();
     assert_eq!(one.lines().count(), 1);
     assert!(compare("coarse", "B").unwrap().ends_with(&one));
     // one that can't be read is told of and left alone
-    std::fs::write(&kept, "no JSON\n").unwrap();
+    std::fs::write(&record, "no JSON\n").unwrap();
     assert_eq!(compare("coarse", "C").unwrap(), "no JSON\n");
 }
 

@@ -113,14 +113,14 @@ fn a_tolerance_without_a_value_to_compare_with_is_undecided_and_fails_where_tole
     let all = std::fs::read_to_string(folder.path().join("all.csv")).unwrap();
     let rows: Vec<Vec<&str>> = all.lines().map(|line| line.split(',').collect()).collect();
     let of = |name: &str| rows[0].iter().position(|heading| *heading == name).unwrap();
-    let kept = ["time", "outer_velocity", "inner_velocity"].map(of);
-    let row = |row: &Vec<&str>| kept.map(|k| row[k]).join(",");
+    let columns = ["time", "outer_velocity", "inner_velocity"].map(of);
+    let row = |row: &Vec<&str>| columns.map(|k| row[k]).join(",");
     let mut text = rows.iter().map(row).collect::<Vec<_>>().join("\n");
     // both bodies fly on
     let last = rows.last().unwrap();
-    let end: f64 = last[kept[0]].parse().unwrap();
+    let end: f64 = last[columns[0]].parse().unwrap();
     for k in 1..=rows.len() / 10 {
-        text += &format!("\n{},{},{}", end + 1e-7 * k as f64, last[kept[1]], last[kept[2]]);
+        text += &format!("\n{},{},{}", end + 1e-7 * k as f64, last[columns[1]], last[columns[2]]);
     }
     std::fs::write(folder.path().join("velocities.csv"), text).unwrap();
     let imported = run(&["reference", "import", "scene.toml", "--from", "velocities.csv"]);

@@ -170,8 +170,8 @@ fn one_signal_is_enough_and_missing_free_flight_is_reported() {
     }
     let whole = record(&truth, &SIGNALS, quiet);
     let part = |keep: &dyn Fn(f64) -> bool| {
-        let kept: Vec<usize> = (0..whole.time.len()).filter(|i| keep(whole.time[*i])).collect();
-        let pick = |values: &[f64]| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+        let selected: Vec<usize> = (0..whole.time.len()).filter(|i| keep(whole.time[*i])).collect();
+        let pick = |values: &[f64]| selected.iter().map(|i| values[*i]).collect::<Vec<f64>>();
         let channels = whole
             .channels
             .iter()

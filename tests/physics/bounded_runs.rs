@@ -27,8 +27,8 @@ fn summary(text: &str, which: Model) -> Summary {
 /// Table 1 with the lines that begin as `lines` do in their place.
 fn changed(lines: &[&str]) -> String {
     let key = |line: &str| line.split('=').next().unwrap_or_default().to_owned();
-    let kept = TABLE_1.lines().filter(|line| !lines.iter().any(|new| key(new) == key(line)));
-    kept.chain(lines.iter().copied()).collect::<Vec<_>>().join("\n")
+    let unchanged = TABLE_1.lines().filter(|line| !lines.iter().any(|new| key(new) == key(line)));
+    unchanged.chain(lines.iter().copied()).collect::<Vec<_>>().join("\n")
 }
 
 #[test]
@@ -36,12 +36,12 @@ fn a_run_that_goes_on_for_seconds_after_its_impact_has_few_samples() {
     let short = model(TABLE_1, Model::B).run_with_history(1e-7).unwrap();
     let long = model(&changed(&["run = { end_time = \"10 s\" }"]), Model::B);
     let judged = long.run_judged(1e-7).unwrap();
-    let kept = long.run_with_history(1e-7).unwrap();
+    let recorded = long.run_with_history(1e-7).unwrap();
     assert!(judged.history.len() < 6_000, "{}", judged.history.len());
-    assert!(kept.history.len() < SAMPLES_BETWEEN + 2_000, "{}", kept.history.len());
+    assert!(recorded.history.len() < SAMPLES_BETWEEN + 2_000, "{}", recorded.history.len());
     assert_eq!(judged.summary.samples, None);
-    assert_eq!(kept.summary.samples, Some(kept.history.len()));
-    for Outcome { summary, history } in [&judged, &kept] {
+    assert_eq!(recorded.summary.samples, Some(recorded.history.len()));
+    for Outcome { summary, history } in [&judged, &recorded] {
         for name in ["efficiency", "outer_force_peak", "inner_contact_end"] {
             assert_eq!(summary.value(name), short.summary.value(name), "{name}");
         }
@@ -54,7 +54,7 @@ fn a_run_that_goes_on_for_seconds_after_its_impact_has_few_samples() {
     }
     // the impact itself is sampled as finely as without the flight
     let during = |outcome: &Outcome| outcome.history.time.iter().filter(|t| **t < 150e-6).count();
-    assert_eq!(during(&kept), during(&short));
+    assert_eq!(during(&recorded), during(&short));
 }
 
 #[test]

@@ -112,12 +112,12 @@ fn stack_and_circuit_strike_as_their_equations_say() {
 #[test]
 fn a_small_resistance_is_none() {
     for gap in [0.0, 5e-6] {
-        let (_, stored) = run(stack(gap, None));
+        let (_, without_drive) = run(stack(gap, None));
         let (_, behind) = run(stack(gap, Some(Supply { resistance: 1e-4, buffer_capacitance: None })));
-        assert_relative_eq!(stored.velocity[1], behind.velocity[1], max_relative = 1e-3);
-        let [stored, behind] = [&stored, &behind].map(|result| result.supplied.expect("a stack"));
-        assert_relative_eq!(stored.taken, behind.taken, max_relative = 0.02);
-        assert!(stored.rest.abs() < 1e-9 * stored.taken, "{stored:?}");
+        assert_relative_eq!(without_drive.velocity[1], behind.velocity[1], max_relative = 1e-3);
+        let [without_drive, behind] = [&without_drive, &behind].map(|result| result.supplied.expect("a stack"));
+        assert_relative_eq!(without_drive.taken, behind.taken, max_relative = 0.02);
+        assert!(without_drive.rest.abs() < 1e-9 * without_drive.taken, "{without_drive:?}");
     }
 }
 

@@ -5,7 +5,7 @@ pub mod bending;
 pub mod cache;
 pub mod continuum;
 pub mod free_sphere;
-pub(crate) mod kept;
+pub(crate) mod memo;
 pub mod kirchhoff;
 pub mod layer;
 pub mod off_centre;

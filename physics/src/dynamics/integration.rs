@@ -87,7 +87,7 @@ pub struct Integration {
     /// With which steps it was found; `None` of a single run.
     pub converged: Option<Converged>,
     /// Tolerance that the integration keeps whatever smaller one is asked for; 0 where it keeps any.
-    pub kept_tolerance: f64,
+    pub least_tolerance: f64,
     /// What a stack took and gave, if the outer body is one.
     pub supplied: Option<Supplied>,
     /// Why the run ended.
@@ -193,7 +193,7 @@ impl Closing<'_> {
             steps: self.steps,
             error_estimate: None,
             converged: None,
-            kept_tolerance: 0.0,
+            least_tolerance: 0.0,
             supplied,
             stop: if pressed {
                 StopReason::Pressed

@@ -105,12 +105,12 @@ fn having(scene: &Scene, models: &[RequestedModel], left_out: impl Fn(&Error)) -
         RequestedModel::Named(model) => Reduced::require(scene, *model).err(),
         RequestedModel::Auto | RequestedModel::External => None,
     };
-    let kept: Vec<RequestedModel> = models.iter().copied().filter(|request| refused(request).is_none()).collect();
-    if kept.is_empty() {
+    let supported: Vec<RequestedModel> = models.iter().copied().filter(|request| refused(request).is_none()).collect();
+    if supported.is_empty() {
         return models.to_vec();
     }
     models.iter().filter_map(refused).for_each(|error| left_out(&error));
-    kept
+    supported
 }
 
 /// The `models` of `scene`, each once, in the order asked for, with the time in s that each took to set up. A model that is

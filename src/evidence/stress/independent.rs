@@ -24,7 +24,7 @@ const LONGER: f64 = 1.5;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum IndependentCheck {
     /// There is no independent solution at a bearable cost.
-    TooDear,
+    TooExpensive,
     /// The independent solution is itself uncertain: at two tolerances it differs by more than a third of the bound. Or the result
     /// says itself that it is no more exact.
     Undecided,
@@ -110,7 +110,7 @@ pub(super) fn compare(impact: &StressImpact, result: &Integration) -> Independen
         Differences { contacts: found.contacts.filter(|_| countable), ..found }
     };
     let [quick, careful] = TOLERANCES;
-    let Some(quick) = solve(quick, WORK) else { return IndependentCheck::TooDear };
+    let Some(quick) = solve(quick, WORK) else { return IndependentCheck::TooExpensive };
     let difference = apart(ours, quick);
     // much of a larger one is the quick solution's own
     if difference.within(0.1 * bound) {

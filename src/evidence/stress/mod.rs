@@ -257,7 +257,7 @@ fn judge(impact: &StressImpact, result: &Integration, solved: &mut StressRun) ->
     solved.values.push(("steps", result.steps as f64));
     let mut broken = Vec::new();
     match independent::compare(impact, result) {
-        IndependentCheck::TooDear => {}
+        IndependentCheck::TooExpensive => {}
         IndependentCheck::Undecided => (solved.compared, solved.undecided) = (true, true),
         IndependentCheck::Differences(found) => {
             solved.compared = true;

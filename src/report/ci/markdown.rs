@@ -77,9 +77,9 @@ fn sections<O: Ord>(
     let of_run = |own: &SceneReport| scenes.iter().find(|s| s.overview.scene == own.comparison.scene);
     let of_run = |own| of_run(own).expect("the scenes of this run are among those of its folder");
     let own = report.scenes.iter().map(|own| (urgency(of_run(own)), brief(of_run(own), "")));
-    let kept = scenes.iter().filter(|scene| scene.is_kept());
-    let kept = kept.map(|scene| (urgency(scene), brief(scene, &scene.kept())));
-    let briefs: Vec<(O, String)> = own.chain(kept).collect();
+    let earlier = scenes.iter().filter(|scene| scene.is_earlier());
+    let earlier = earlier.map(|scene| (urgency(scene), brief(scene, &scene.earlier())));
+    let briefs: Vec<(O, String)> = own.chain(earlier).collect();
     let mut chosen = fitted(&briefs, room / 4);
     let mut left = room - chosen.iter().flatten().map(|text| size(text)).sum::<usize>();
     for k in by_urgency(&briefs).filter(|k| *k < report.scenes.len()) {

@@ -154,10 +154,10 @@ impl InterfaceBody {
         let mut packed = self.flexibility.iter();
         for i in 0..n {
             for j in 0..=i {
-                let kept: f64 = (0..modes)
+                let memo: f64 = (0..modes)
                     .map(|k| self.participation[k][i] * self.participation[k][j] / self.omega[k].powi(2))
                     .sum();
-                let rest = packed.next().copied().unwrap_or(0.0) - kept;
+                let rest = packed.next().copied().unwrap_or(0.0) - memo;
                 full[i * n + j] = rest;
                 full[j * n + i] = rest;
             }

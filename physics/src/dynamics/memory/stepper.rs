@@ -152,10 +152,10 @@ impl<'a> MemoryStepper<'a> {
         let open = if self.steps > PATIENCE { self.certainly_open() } else { 0.0 };
         let recovering = self.loaded.map_or(f64::INFINITY, |loaded| GRADED * (self.time - loaded));
         let since = self.time - self.loaded.unwrap_or(0.0);
-        let kept = self.sample_interval.max(since / self.samples_per_fold);
-        let kept = self.history.as_ref().map_or(f64::INFINITY, |_| kept);
+        let sampling = self.sample_interval.max(since / self.samples_per_fold);
+        let sampling = self.history.as_ref().map_or(f64::INFINITY, |_| sampling);
         let end = self.end_time - self.time;
-        let steps = outer.min(inner).max(open).min(recovering).min(kept).min(end) / self.h * (1.0 + ROUNDING);
+        let steps = outer.min(inner).max(open).min(recovering).min(sampling).min(end) / self.h * (1.0 + ROUNDING);
         if steps < 2.0 { 0 } else { (steps.log2() as usize).min(MAX_DOUBLINGS) }
     }
 
@@ -391,7 +391,7 @@ impl<'a> MemoryStepper<'a> {
             steps: self.steps,
             error_estimate: None,
             converged: None,
-            kept_tolerance: CHANGE,
+            least_tolerance: CHANGE,
             supplied: None,
             stop: StopReason::of(self.contacts.iter().any(|contact| contact.closed)),
             history: self.history,

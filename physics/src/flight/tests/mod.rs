@@ -190,7 +190,7 @@ fn rolling_off_an_edge() {
 
 /// Nothing is lost without friction at a restitution of 1, however often the sphere bounces.
 #[test]
-fn energy_is_kept_where_nothing_takes_it() {
+fn energy_is_conserved_without_dissipation() {
     let setup = Setup { end_time: 0.5, ..valve(37e-3, 1.0, 0.0) };
     let launch = Launch { speed: 1.838, angle: 0.3, spin: 0.0 };
     let flight = fly(&setup, &Landscape::unknown(), &launch, true);

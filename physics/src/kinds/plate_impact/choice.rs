@@ -57,7 +57,7 @@ const REFERENCE_SHARE: f64 = 0.05;
 const LEFT_OUT_SHARE: f64 = 0.25;
 /// Patch radius over the plate's thickness up to which the estimate is a promise: of 1400 random scenes 3 of 32 promises were
 /// broken beyond, 6 of 3027 up to there.
-pub(super) const PROMISED: f64 = 0.9;
+pub(super) const STATED_ACCURACY: f64 = 0.9;
 /// Fewest bending modes that model C is taken with: held against itself with more or fewer, it would agree by chance too often.
 pub(super) const LEAST: usize = 4;
 /// Most modes that model C is built with when its first ones turn out to be too few.
@@ -116,7 +116,7 @@ impl<'a> ChoicePlan<'a> {
         };
         let trials = Trials::new(setup, REFERENCE_SHARE * tolerance, options)?;
         let (patch, thickness) = (trials.predictor.patch_radius, setup.plate.thickness);
-        let wide = patch[0].max(patch[1]) > PROMISED * thickness;
+        let wide = patch[0].max(patch[1]) > STATED_ACCURACY * thickness;
         let mut plan = Self {
             tolerance,
             floor: validity::measured_error(patch, thickness).filter(|_| !wide),
@@ -372,7 +372,7 @@ impl<'a> ChoicePlan<'a> {
                 "model {model} is taken without an estimate: with fewer modes its contacts have no solution"
             ),
             _ => format!(
-                "model {model} is taken without an estimate: the contact patches are wider, over the plate's thickness, than those up to which estimates were found true ({PROMISED})"
+                "model {model} is taken without an estimate: the contact patches are wider, over the plate's thickness, than those up to which estimates were found true ({STATED_ACCURACY})"
             ),
         }
     }

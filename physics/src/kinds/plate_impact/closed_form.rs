@@ -108,7 +108,7 @@ pub(super) fn choose(
     let look = join(setup, waves(plate, &modes[..modes.len().min(LOOK)]), [0.0; 2])?;
     let predictor = Predictor::rough(&look, NEGLIGIBLE * plate.thickness)?;
     let patch = predictor.patch_radius;
-    let wide = patch[0].max(patch[1]) > choice::PROMISED * plate.thickness;
+    let wide = patch[0].max(patch[1]) > choice::STATED_ACCURACY * plate.thickness;
     let floor = validity::measured_error(patch, plate.thickness).filter(|_| !wide && holds(setup, patch));
     let Some(floor) = floor else { return Ok(None) };
     let approach = look.laws[0].approach(predictor.force_peak[0]) / predictor.force_peak[0];

@@ -186,13 +186,13 @@ impl<'a> ContactProblem<'a> {
     }
 
     /// Copies the present solution.
-    pub fn keep(&self, kept: &mut Loads) {
-        kept.clone_from(&self.loads);
+    pub fn keep(&self, checkpoint: &mut Loads) {
+        checkpoint.clone_from(&self.loads);
     }
 
     /// Goes back to a solution that was kept; a survey has to follow.
-    pub fn go_back(&mut self, kept: &Loads) {
-        self.loads.clone_from(kept);
+    pub fn go_back(&mut self, checkpoint: &Loads) {
+        self.loads.clone_from(checkpoint);
     }
 
     /// Finds the forces at the modal coordinates `modal` in m kg^(1/2).

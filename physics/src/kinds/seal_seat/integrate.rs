@@ -70,7 +70,7 @@ struct SealSeatRun<'a> {
     tally: Tally,
     samples: Vec<Sample>,
     start_energy: f64,
-    kept: Checkpoint,
+    checkpoint: Checkpoint,
 }
 
 /// Where a run can go back to.
@@ -93,7 +93,7 @@ impl<'a> SealSeatRun<'a> {
             forces: Forces::default(),
             tally: Tally::default(),
             samples: Vec::new(),
-            kept: Checkpoint {
+            checkpoint: Checkpoint {
                 state: state.clone(),
                 forces: Forces::default(),
                 tally: Tally::default(),
@@ -128,19 +128,19 @@ impl<'a> SealSeatRun<'a> {
     }
 
     fn keep(&mut self) {
-        self.kept.state.clone_from(&self.state);
-        self.kept.forces.clone_from(&self.forces);
-        self.kept.tally = self.tally;
-        self.kept.samples = self.samples.len();
-        self.workspace.contact.keep(&mut self.kept.loads);
+        self.checkpoint.state.clone_from(&self.state);
+        self.checkpoint.forces.clone_from(&self.forces);
+        self.checkpoint.tally = self.tally;
+        self.checkpoint.samples = self.samples.len();
+        self.workspace.contact.keep(&mut self.checkpoint.loads);
     }
 
     fn go_back(&mut self) {
-        self.state.clone_from(&self.kept.state);
-        self.forces.clone_from(&self.kept.forces);
-        self.tally = self.kept.tally;
-        self.samples.truncate(self.kept.samples);
-        self.workspace.contact.go_back(&self.kept.loads);
+        self.state.clone_from(&self.checkpoint.state);
+        self.forces.clone_from(&self.checkpoint.forces);
+        self.tally = self.checkpoint.tally;
+        self.samples.truncate(self.checkpoint.samples);
+        self.workspace.contact.go_back(&self.checkpoint.loads);
     }
 
     fn step(&mut self) -> Result<()> {

@@ -110,9 +110,9 @@ impl Reduced {
     fn solved(&self, tolerance: f64, options: Options) -> Result<Point> {
         let options = Options { peak_error: PEAK_ERROR * options.tolerance, ..options };
         let result = self.impacts().all(&options)?.last;
-        ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.kept_tolerance))?;
+        ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.least_tolerance))?;
         let enough =
-            options.results.unwrap_or(assured::ENOUGH * options.tolerance).max(result.kept_tolerance);
+            options.results.unwrap_or(assured::ENOUGH * options.tolerance).max(result.least_tolerance);
         Ok(Point {
             quantities: self.of_all_energy(quantities(&self.system, &result)?),
             energy_residual: result.energy_residual,
@@ -182,11 +182,11 @@ impl Reduced {
     }
 
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
-        let (system, tolerance) = (&self.system, tolerance.max(result.kept_tolerance));
+        let (system, tolerance) = (&self.system, tolerance.max(result.least_tolerance));
         let setup = &*self.scene.plate_impact()?.along_normal();
         let end_time = self.scene.run.end_time;
         let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
-        let even_steps = result.kept_tolerance > 0.0;
+        let even_steps = result.least_tolerance > 0.0;
         let unsure =
             result.error_estimate.filter(|error| !even_steps && *error > assured::ENOUGH * tolerance);
         let mut warnings = scene::doubts(&self.scene);
