@@ -59,7 +59,7 @@ fn once(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let entries = job.trends(&comparisons, None)?;
     let report = job.report(context, &results, comparisons, &entries)?;
     let comparison = job.finish(context, &report, None)?;
-    Ok(match comparison.lacks_a_result() {
+    Ok(match comparison.has_no_result() {
         true => ExitStatus::Solver,
         false if job.refuses(&comparison) => ExitStatus::ToleranceExceeded,
         false => ExitStatus::Pass,

@@ -54,10 +54,10 @@ impl<'a> Job<'a> {
         let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
         // of all shipped scenes those are compared that have one of the models
         if arguments.scenes.is_empty() {
-            let (supported, left_out) =
+            let (supported, omitted) =
                 scenes.into_iter().partition(|(_, scene)| kinds::has_one_of(scene, &arguments.models));
             scenes = supported;
-            for (_, scene) in left_out {
+            for (_, scene) in omitted {
                 context.note(format_args!("{}", crate::kinds::models_only(&scene)));
             }
         }

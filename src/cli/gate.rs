@@ -83,7 +83,7 @@ fn conclude(
         report_to_github(context, job, &report)?;
     }
     let comparison = job.finish(context, &report, junit)?;
-    if comparison.lacks_a_result() {
+    if comparison.has_no_result() {
         return Ok(ExitStatus::Solver);
     }
     if comparison.verdict.failed() {
@@ -103,7 +103,7 @@ fn report_verdicts(job: &Job, report: &Report) {
         let SceneComparison { scene, verdict, .. } = comparison;
         let is_refused = comparison.is_refused(rules);
         let word = if is_refused { "error" } else { "warning" };
-        let lacking = comparison.without_reference();
+        let without_value = comparison.without_reference();
         match verdict {
             Verdict::NotGated => {
                 let file =
@@ -114,9 +114,9 @@ fn report_verdicts(job: &Job, report: &Report) {
                 ));
             }
             _ if rules.undecided == Undecided::Pass && !is_refused => {}
-            _ if !lacking.is_empty() => super::notify(format_args!(
+            _ if !without_value.is_empty() => super::notify(format_args!(
                 "{word}: the reference of scene `{scene}` has no value for these tolerances, which stay undecided: {}",
-                lacking.join(", ")
+                without_value.join(", ")
             )),
             Verdict::Undecided => super::notify(format_args!(
                 "{word}: scene `{scene}` is undecided: the uncertainty of its reference is too large for some tolerances; see the lines above for what decides them"

@@ -25,7 +25,7 @@ fn targeted_band(reference: &Summary) -> Option<f64> {
 
 /// With the band narrowed to the distance from the bound, the row is decided. All bands shrink alike with the mesh.
 fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
-    if row.lacks_reference() {
+    if row.has_no_reference() {
         return Some("the reference has no value of it: use one that has, or remove the tolerance".into());
     }
     let (tolerance, band) = (row.tolerance?, row.band()?);

@@ -175,10 +175,10 @@ fn verify(folder: &Path, mesh_files: MeshFiles) -> Result<(), Damage> {
     if let Some(name) = REQUIRED.iter().filter(needed).find(|name| !listed.contains_key(**name)) {
         return Err(damage(CHECKSUMS, format!("does not list {name}")));
     }
-    let left_out = |name: &str| {
+    let omitted = |name: &str| {
         mesh_files == MeshFiles::Optional && name.ends_with(".vtu") && !folder.join(name).exists()
     };
-    for (name, expected) in listed.into_iter().filter(|(name, _)| !left_out(name)) {
+    for (name, expected) in listed.into_iter().filter(|(name, _)| !omitted(name)) {
         let found =
             sha256_file(&folder.join(name)).map_err(|e| damage(name, format!("can't be read: {e}")))?;
         if !found.eq_ignore_ascii_case(expected) {

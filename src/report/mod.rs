@@ -12,7 +12,7 @@ mod kinds;
 mod overview;
 mod page;
 mod run_times;
-mod standing;
+mod existing;
 mod summary_column;
 mod terminal;
 mod trust;

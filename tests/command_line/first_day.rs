@@ -208,7 +208,7 @@ fn a_pure_number_has_no_unit() {
 }
 
 #[test]
-fn a_model_that_has_no_form_for_a_scene_is_left_out_of_its_comparison() {
+fn a_model_that_has_no_form_for_a_scene_is_omitted_from_its_comparison() {
     let folder = tempfile::tempdir().unwrap();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/validation/off-centre.toml");
     let scene = scene.to_str().unwrap();

@@ -231,7 +231,7 @@ fn contacts_on_a_plate_thinner_than_their_patches_find_an_equilibrium() {
 
 /// A contact that turns from loading to unloading within a step has the slope of the other side; the plate under it answers to both contacts.
 #[test]
-fn contacts_that_yield_find_an_equilibrium_where_they_turn() {
+fn plastic_contacts_find_an_equilibrium_at_greatest_approach() {
     let yielding = changed(&[
         "materials.plate = { youngs_modulus = \"200 GPa\", poisson_ratio = 0.29, density = \"8000 kg/m^3\", yield_strength = 243947438.23819935, hardening = 661610720.1682781 }",
         "materials.outer = { youngs_modulus = \"200 GPa\", poisson_ratio = 0.29, density = \"8000 kg/m^3\", yield_strength = 1156215417.73127, hardening = 266887355.42799073 }",

@@ -60,7 +60,7 @@ fn fresh_spots_stay_below_the_elastic_efficiency() {
 /// first impact).
 #[test]
 #[allow(clippy::approx_constant, reason = "one efficiency happens to be near 2/pi")]
-fn surfaces_that_yield_unlike_shake_down_as_in_finite_elements() {
+fn surfaces_of_unequal_yield_strength_shake_down_as_in_finite_elements() {
     // Young's modulus in GPa, Poisson's ratio, density in kg/m^3; tangent modulus E/200 but of steel 2.1 GPa
     let (steel, aluminium) = ([210.0, 0.3, 7780.0], [70.0, 0.33, 2700.0]);
     let (titanium, bronze) = ([115.0, 0.37, 4430.0], [110.0, 0.34, 8800.0]);
@@ -162,8 +162,8 @@ fn two_humps_of_a_force_are_no_jump() {
         let text = text.replace("MPa\" }", "MPa\", hardening = 0 }");
         let scene = Scene::parse("humps", &text).unwrap();
         let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-7).unwrap();
-        let settled = !summary.warnings.iter().any(|warning| warning.contains("uncertain by"));
-        assert!(settled, "{strength} MPa: {:?}", summary.warnings);
+        let steady = !summary.warnings.iter().any(|warning| warning.contains("uncertain by"));
+        assert!(steady, "{strength} MPa: {:?}", summary.warnings);
         summary.value("efficiency").unwrap()
     };
     let found: Vec<f64> = (0..=10).map(|k| of(90.0 + 2.0 * f64::from(k))).collect();

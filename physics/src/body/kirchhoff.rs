@@ -172,7 +172,7 @@ impl UnitPlates {
     ///
     /// # Errors
     /// As [`UnitPlate::new`].
-    pub(crate) fn rough_modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
+    pub(crate) fn initial_modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
         let poisson_ratio = (10.0 * plate.material.poisson_ratio).round().min(4.0) / 10.0;
         Ok(self.unit(plate.edge, poisson_ratio, modes)?.scale(plate))
     }

@@ -111,7 +111,7 @@ mod tests {
 
     /// Few modes and what the waves beyond them yield, against the same closed forms.
     #[test]
-    fn modes_and_the_waves_beyond_them_yield_as_all_modes() {
+    fn modes_and_the_waves_beyond_them_have_the_compliance_of_all_modes() {
         let plate = plate(Edge::Clamped);
         let unit = plate.radius.powi(2)
             / (16.0 * PI * rigidity(plate.material.youngs_modulus, 0.3, plate.thickness));

@@ -24,7 +24,7 @@ pub struct Options {
     /// Relative error of the force peaks from looking for them within the steps; 0 = as exact as rounding permits.
     pub peak_error: f64,
     /// Relative error of force peaks and times of separation, with right numbers of contacts, for which the impact is solved again where
-    /// necessary ([`crate::dynamics::assured`]); `None` where ten tolerances of velocities and force peaks are enough.
+    /// necessary ([`crate::dynamics::error_control`]); `None` where ten tolerances of velocities and force peaks are enough.
     pub results: Option<f64>,
     /// Whether the heat in the drive of a stack is summed up, for its ledger of energy.
     pub heat: bool,
@@ -82,7 +82,7 @@ pub struct Integration {
     /// Accepted steps.
     pub steps: u64,
     /// Estimated error of the velocities from the time integration, over the impact speed, if it was looked for
-    /// ([`crate::dynamics::assured`]).
+    /// ([`crate::dynamics::error_control`]).
     pub error_estimate: Option<f64>,
     /// With which steps it was found; `None` of a single run.
     pub converged: Option<Converged>,

@@ -3,7 +3,7 @@
 mod judged;
 
 use self::judged::StepVerdict;
-use super::bank::in_blocks;
+use super::batch::in_blocks;
 use super::collocation::{Collocation, POINTS};
 use super::contact_forces::{Course, ForceError, StepSolver};
 use super::contact_ledger::{ContactLedger, StepCourse};
@@ -12,7 +12,7 @@ use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
 use super::heating;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
-use super::ladder::Ladder;
+use super::step_tables::StepTables;
 use super::recorder::Recorder;
 use super::step_bounds::{AdaptedLength, EnergyAccount, StepBounds, base_step, force_scale, momentum_scale};
 use super::system::{System, dot};
@@ -27,7 +27,7 @@ const RATTLING: u32 = 1000;
 /// stiff contact, quicker than any of its modes, does so for too long.
 const TURN_PER_STEP: f64 = 0.1;
 /// Share of a force's admissible defect at which the sweeps may end.
-const SETTLED: f64 = 0.1;
+const CONVERGED: f64 = 0.1;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
 
@@ -51,7 +51,7 @@ struct DryStepper<'a> {
     end_time: f64,
     bounds: StepBounds,
     length: AdaptedLength,
-    tables: Ladder,
+    tables: StepTables,
     time: f64,
     q: Vec<f64x4>,
     v: Vec<f64x4>,
@@ -90,7 +90,7 @@ impl<'a> DryStepper<'a> {
             length: AdaptedLength::new(base_step(hit.duration(), options.tolerance), START_LEVEL),
             energy: EnergyAccount::new(&hit, system.kinetic_energy(), options.tolerance),
             bounds: StepBounds::new(options.tolerance),
-            tables: Ladder::new(q.len()),
+            tables: StepTables::new(q.len()),
             time: 0.0,
             next_q: q.clone(),
             next_v: v.clone(),
@@ -138,9 +138,9 @@ impl<'a> DryStepper<'a> {
             bytemuck::cast_slice_mut(&mut self.v),
         );
         self.time += flight;
-        let (bank, v) = (&self.solver.bank, &self.v);
+        let (batch, v) = (&self.solver.batch, &self.v);
         let approach = self.solver.system.modal_approach(flat(&self.q));
-        let rates = bank.approach_rate(v);
+        let rates = batch.approach_rate(v);
         for ((contact, approach), rate) in self.contacts.iter_mut().zip(approach).zip(rates) {
             // a parabola that comes back to zero at this rate was a quarter of it times its duration deep
             contact.book_flight((0.25 * rate * flight).max(-approach));
@@ -164,14 +164,14 @@ impl<'a> DryStepper<'a> {
             let h = self.length.length();
             let rest = self.end_time - self.time;
             let shorter = shortened.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
-            let (bank, collocation, system) =
-                (&self.solver.bank, self.solver.collocation, self.solver.system);
+            let (batch, collocation, system) =
+                (&self.solver.batch, self.solver.collocation, self.solver.system);
             let scale = momentum_scale(system, &self.contacts);
             let least = self.least_forces(scale);
             let share = StepBounds::share(self.steps);
             let table = match shorter {
-                Some(h) => self.tables.other(bank, collocation, h),
-                None => self.tables.get(bank, collocation, self.length.level(), h),
+                Some(h) => self.tables.other(batch, collocation, h),
+                None => self.tables.get(batch, collocation, self.length.level(), h),
             };
             let h = table.h;
             let trial = self.solver.solve(
@@ -181,7 +181,7 @@ impl<'a> DryStepper<'a> {
                 (&mut self.next_q, &mut self.next_v),
                 ForceError {
                     absolute: least.map(|least| {
-                        let peak = SETTLED * share * self.bounds.force_defect * least;
+                        let peak = CONVERGED * share * self.bounds.force_defect * least;
                         peak.min(self.bounds.impulse * scale[1] / h)
                     }),
                     relative: self.bounds.force,
@@ -294,11 +294,11 @@ impl<'a> DryStepper<'a> {
 
     /// Books the largest forces of the step from the present state to the next.
     fn book_peaks(&mut self, trial: &Course) {
-        let StepSolver { system, collocation, bank, .. } = &self.solver;
+        let StepSolver { system, collocation, batch, .. } = &self.solver;
         let h = trial.h;
         let motion = |place: f64| {
             let forces = trial.stages().map(|stages| collocation.derivatives(&stages, h));
-            let [approach, rate, acceleration] = bank.approach_after((&self.q, &self.v), &forces, place * h);
+            let [approach, rate, acceleration] = batch.approach_after((&self.q, &self.v), &forces, place * h);
             [
                 [approach[0] - system.gap[0], approach[1] - system.gap[1]],
                 rate.map(|rate| rate * h),
@@ -318,7 +318,7 @@ impl<'a> DryStepper<'a> {
             contact.force_peak = step.peak(i, contact.force_peak, |end| {
                 let v = if end == 0 { &self.v } else { &self.next_v };
                 let local = trial.local_approach.map(|values| values[end * (POINTS - 1)]);
-                system.force_rate(local, bank.approach_rate(v))[i] > 0.0
+                system.force_rate(local, batch.approach_rate(v))[i] > 0.0
             });
         }
     }

@@ -1,7 +1,7 @@
 //! The motion: bodies as oscillators, coupled by contacts and fluid, from the first touch to the last release.
 
-pub mod assured;
-mod bank;
+pub mod error_control;
+mod batch;
 mod centre;
 mod clearance;
 pub mod collocation;
@@ -14,8 +14,8 @@ mod free_flight;
 mod heating;
 pub mod integration;
 pub mod integrator;
-pub(crate) mod kicks;
-mod ladder;
+pub(crate) mod impulse_splitting;
+mod step_tables;
 mod ledger_check;
 pub mod memory;
 mod moving_body;

@@ -208,11 +208,11 @@ impl FlightRun<'_> {
         (self.state.velocity, self.state.spin) = rebound(self.setup, &self.state, normal);
         self.contacts += 1;
         self.events += 1;
-        self.settle();
+        self.come_to_rest();
     }
 
     /// Decides whether the sphere flies, stays on a surface or rests between two.
-    fn settle(&mut self) {
+    fn come_to_rest(&mut self) {
         let (setup, state) = (self.setup, self.state);
         let pull = setup.field.acceleration(setup.mass, state.time, state.place);
         let bounce = BOUNCE * setup.radius;
@@ -313,7 +313,7 @@ impl Setup {
             contacts: 0,
             first: None,
         };
-        running.settle();
+        running.come_to_rest();
         (running.state, running.mode)
     }
 }

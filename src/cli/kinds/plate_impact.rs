@@ -99,8 +99,8 @@ impl ReducedModels for Plates {
     }
 }
 
-/// Those of `models` that have a form for `scene`; `left_out` is told why of the others. All if none has, which tells why, too.
-fn having(scene: &Scene, models: &[RequestedModel], left_out: impl Fn(&Error)) -> Vec<RequestedModel> {
+/// Those of `models` that have a form for `scene`; `omitted` is told why of the others. All if none has, which tells why, too.
+fn having(scene: &Scene, models: &[RequestedModel], omitted: impl Fn(&Error)) -> Vec<RequestedModel> {
     let refused = |request: &RequestedModel| match request {
         RequestedModel::Named(model) => Reduced::require(scene, *model).err(),
         RequestedModel::Auto | RequestedModel::External => None,
@@ -109,7 +109,7 @@ fn having(scene: &Scene, models: &[RequestedModel], left_out: impl Fn(&Error)) -
     if supported.is_empty() {
         return models.to_vec();
     }
-    models.iter().filter_map(refused).for_each(|error| left_out(&error));
+    models.iter().filter_map(refused).for_each(|error| omitted(&error));
     supported
 }
 

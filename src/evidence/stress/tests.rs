@@ -33,7 +33,7 @@ fn amplified_errors_are_estimated_and_mended() {
     let (system, requested) = (&case.dry.system, options(&case, 1e-7));
     let plain = integrate(system, None, &requested).unwrap();
     assert!(error(&case, &plain) > 1e-5 && plain.error_estimate.is_none());
-    let sure = assured(&requested, system, |options| integrate(system, None, options)).unwrap();
+    let sure = controlled(&requested, system, |options| integrate(system, None, options)).unwrap();
     let estimate = sure.error_estimate.unwrap();
     assert!(error(&case, &sure) <= estimate && estimate <= 1e-6, "{estimate:e}");
 }
@@ -48,10 +48,10 @@ fn defects_of_many_steps_add_up() {
         let exact = integrate(system, None, &options(&case, 1e-11)).unwrap();
         let apart = |result: &Integration| {
             let peaks = [result, &exact].map(|result| result.contacts.map(|c| c.force_peak));
-            crate::dynamics::assured::differences(system, [result.velocity, exact.velocity], peaks)[1]
+            crate::dynamics::error_control::differences(system, [result.velocity, exact.velocity], peaks)[1]
         };
         assert!(apart(&integrate(system, None, &requested).unwrap()) > 1e-5);
-        let sure = assured(&requested, system, |options| integrate(system, None, options)).unwrap();
+        let sure = controlled(&requested, system, |options| integrate(system, None, options)).unwrap();
         assert!(apart(&sure) < 1e-6, "{seed}: {:e}", apart(&sure));
     }
 }
@@ -178,7 +178,7 @@ fn a_plate_that_lies_on_the_inner_body_is_refused_at_once() {
 /// Fast bodies move together, and the film answers to the rounding of their rates with forces far above those of the contact beside it:
 /// steps of 1e-11 s did not settle either.
 #[test]
-fn a_film_that_answers_to_rounding_settles() {
+fn a_film_that_answers_to_rounding_converges() {
     let report = run(1, 10_000_011_920, &|| ()).unwrap();
     assert_eq!((report.failures, report.beyond_model), (vec![], vec![10_000_011_920]));
     assert!(report.worst["steps"].value < 1000.0, "{:?}", report.worst["steps"]);
@@ -212,7 +212,7 @@ fn the_peak_under_a_light_plate_is_as_exact_as_any() {
 
 /// A free foil of 2 g between 1.7 kg and 1300 kg that close in on it: it rattles 37 000 times before they part.
 #[test]
-fn a_foil_that_rattles_endlessly_is_refused_as_that() {
+fn a_thin_plate_with_endless_impacts_is_refused() {
     let case = draw(12_000_010_418);
     let solved = integrate(&case.dry.system, None, &options(&case, 1e-7));
     let Err(Error::BeyondModel(sentence)) = solved else { panic!("{solved:?}") };
@@ -235,7 +235,7 @@ fn a_result_that_says_it_is_uncertain_is_undecided() {
 /// A foil of .1 mm between 23 kg and 23 t trembles at 1e8 rad/s on an inner contact a hundred thousand times as stiff as the outer one:
 /// five million steps follow it through a tenth of the impact.
 #[test]
-fn a_foil_that_trembles_for_ever_is_refused_as_that() {
+fn a_thin_plate_with_endless_chatter_is_refused() {
     let case = draw(14_000_012_920);
     let solved = integrate(&case.dry.system, None, &options(&case, 1e-7));
     let Err(Error::BeyondModel(sentence)) = solved else { panic!("{solved:?}") };

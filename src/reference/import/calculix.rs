@@ -320,7 +320,7 @@ mod tests {
         let glued = FRD.replacen("-5.94162E-09-4.39181E-08", "-5.94162E-094.39181E-08", 1);
         assert_eq!(packed(" 1.00000E-10-2.00000E-1003.00000E+01"), Some(vec![1e-10, -2e-100, 30.0]));
         assert!(frd(&glued, &["DISP 5 D3"]).is_ok());
-        let lacking = FRD.replacen("-5.94162E-09-4.39181E-08", "-4.39181E-08", 1);
-        assert!(frd(&lacking, &["DISP 5 D3"]).is_err_and(|reason| reason.contains("2 values of 3")));
+        let incomplete = FRD.replacen("-5.94162E-09-4.39181E-08", "-4.39181E-08", 1);
+        assert!(frd(&incomplete, &["DISP 5 D3"]).is_err_and(|reason| reason.contains("2 values of 3")));
     }
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::format::{percent, prefixed, with_unit};
 use crate::report::Report;
 use crate::report::export::Export;
-use crate::report::standing::Folder;
+use crate::report::existing::Folder;
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 
 /// The checks of this run.

@@ -3,7 +3,7 @@
 use crate::coverage::{CLOSED_FORM, Coverage, FeatureCoverage, FeatureComparison};
 use crate::format::{percent_above, words};
 use crate::report::page::html::{page, scrolled};
-use crate::report::standing::Standing;
+use crate::report::existing::ExistingScene;
 use crate::report::trust::size_class;
 use maud::{Markup, html};
 
@@ -18,9 +18,9 @@ const MODELS: [&str; 3] = ["A", "B", "C"];
 /// The partners that have a column of their own; all others are other programs.
 const COMPARATORS: [&str; 3] = ["axisymmetric", "solid", CLOSED_FORM];
 
-/// The page of `coverage`; scenes with a page among those `standing` are linked.
-pub(crate) fn of(coverage: &Coverage, standing: &[Standing]) -> String {
-    let pages: Vec<&str> = standing.iter().map(|scene| &*scene.overview.scene).collect();
+/// The page of `coverage`; scenes with a page among those `existing` are linked.
+pub(crate) fn of(coverage: &Coverage, existing: &[ExistingScene]) -> String {
+    let pages: Vec<&str> = existing.iter().map(|scene| &*scene.overview.scene).collect();
     let body = html! {
         h1 { "Coverage" }
         p { a href="index.html" { "All scenes" } }

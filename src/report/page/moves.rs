@@ -79,10 +79,10 @@ fn is_distance(row: &Moved) -> bool {
 
 /// The first of `rows` in a table of its own `class`, which its grid is called by.
 fn numbers(class: &str, rows: &[&Moved]) -> Markup {
-    let (shown, left_out) = rows.split_at(rows.len().min(SHOWN));
+    let (shown, omitted) = rows.split_at(rows.len().min(SHOWN));
     html! {
         (scrolled("Numbers", &table(class, shown)))
-        @if !left_out.is_empty() { p.soft.note { (left_out.len()) " smaller moves are not shown: " code { "--json" } " has them." } }
+        @if !omitted.is_empty() { p.soft.note { (omitted.len()) " smaller moves are not shown: " code { "--json" } " has them." } }
     }
 }
 

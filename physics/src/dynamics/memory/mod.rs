@@ -18,7 +18,7 @@ pub(crate) use self::modes::ModeFlow;
 use self::contact::Contact;
 use self::step_force::StepForce;
 use self::stepper::MemoryStepper;
-use super::assured::differences;
+use super::error_control::differences;
 use super::driver;
 use super::integration::{Converged, Integration, Options};
 use super::system::System;
@@ -42,7 +42,7 @@ pub const CHANGE: f64 = 1e-4;
 /// in order.
 const MOST_ROUNDS: usize = 24;
 const STRAIGHT: usize = 3;
-const SETTLED: f64 = 1e-5;
+const CONVERGED: f64 = 1e-5;
 /// Representative plastic strain under a sphere over the contact radius over its own (Tabor, The Hardness of Metals, 1951).
 const TABOR: f64 = 0.2;
 
@@ -145,7 +145,7 @@ impl Memory {
         let contacts = [contact(0)?, contact(1)?];
         let mut warnings: Vec<String> = materials
             .into_iter()
-            .filter_map(|material| hardening_left_out(material, system, &hits))
+            .filter_map(|material| hardening_omitted(material, system, &hits))
             .collect();
         warnings.sort();
         warnings.dedup();
@@ -269,7 +269,7 @@ fn contact(pair: [&Material; 2], hertz: Hertz, hit: &HertzImpact) -> Result<Cont
 }
 
 /// A sentence if `material` hardens under contacts as hard as `hits` by more than the law without hardening can leave out.
-fn hardening_left_out(material: &Material, system: &System, hits: &[HertzImpact; 2]) -> Option<String> {
+fn hardening_omitted(material: &Material, system: &System, hits: &[HertzImpact; 2]) -> Option<String> {
     let plasticity = material.plasticity()?;
     let radius = |i: usize| (hits[i].approach_peak() / system.laws[i].tip_radius).sqrt();
     let strain = TABOR * radius(0).max(radius(1));
@@ -365,7 +365,7 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
         let ran = run(0, stress, Some(peaks_of(&before)))?;
         unsettled = change(&before, &ran);
         before = ran;
-        if unsettled <= SETTLED {
+        if unsettled <= CONVERGED {
             unsettled = 0.0;
             break;
         }

@@ -183,7 +183,7 @@ impl WetStepper<'_> {
             let (h, rest) = (self.length.length(), self.end_time - self.time);
             let start = (self.force, &self.load.force[..]);
             let scale = momentum_scale(self.wet.system, &self.contacts);
-            let settled = self.settled(scale);
+            let converged = self.converged(scale);
             self.before.guess(self.collocation, h.min(rest), start, &mut self.trial);
             let system = self.wet.system;
             let last;
@@ -196,7 +196,7 @@ impl WetStepper<'_> {
                     .or_insert_with(|| WetTable::new(system, self.collocation, h))
             };
             let h = table.h;
-            if !self.wet.solve(table, &self.q, &self.v, settled.in_step(h), &mut self.trial) {
+            if !self.wet.solve(table, &self.q, &self.v, converged.in_step(h), &mut self.trial) {
                 self.length.halve();
                 continue;
             }
@@ -212,7 +212,7 @@ impl WetStepper<'_> {
             }
             if may_end && let Some(end) = self.end_in_step(h) {
                 let table = WetTable::new(system, self.collocation, end);
-                if !self.wet.solve(&table, &self.q, &self.v, settled.in_step(end), &mut self.trial) {
+                if !self.wet.solve(&table, &self.q, &self.v, converged.in_step(end), &mut self.trial) {
                     self.length.halve();
                     continue;
                 }
@@ -270,8 +270,8 @@ impl WetStepper<'_> {
     fn book_peaks(&mut self, h: f64) {
         let (system, trial) = (self.wet.system, &self.trial);
         let forces = self.wet.generalised(trial);
-        let approach = [0, 1].map(|i| joined(self.approach[i], &trial.approach[i]));
-        let force = [0, 1].map(|i| joined(self.force[i], &trial.forces[i]));
+        let approach = [0, 1].map(|i| with_start(self.approach[i], &trial.approach[i]));
+        let force = [0, 1].map(|i| with_start(self.force[i], &trial.forces[i]));
         let motion = |place: f64| {
             let (q, v) = self.motion_at(&forces, place * h, h);
             let weights = self.collocation.interpolation(place);
@@ -322,8 +322,8 @@ impl WetStepper<'_> {
                 time: self.time,
                 h,
                 work: account.contact_work[i],
-                local_approach: joined(self.local[i], &trial.local[i]),
-                force: joined(self.force[i], &trial.forces[i]),
+                local_approach: with_start(self.local[i], &trial.local[i]),
+                force: with_start(self.force[i], &trial.forces[i]),
             };
             self.contacts[i].book(self.collocation, &course);
         }
@@ -346,7 +346,7 @@ impl WetStepper<'_> {
 }
 
 /// Values at the start and Radau's points of a step.
-fn joined(start: f64, stages: &Stages) -> [f64; RADAU_POINTS] {
+fn with_start(start: f64, stages: &Stages) -> [f64; RADAU_POINTS] {
     std::array::from_fn(|p| if p == 0 { start } else { stages[p - 1] })
 }
 

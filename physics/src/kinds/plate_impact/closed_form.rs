@@ -11,7 +11,7 @@
 
 use super::PlateImpact;
 use super::errors::{COVERED, largest_error};
-use super::joined::{Joined, join};
+use super::assembled::{Assembled, join};
 use super::predictor::Predictor;
 use super::results::quantities;
 use super::{choice, validity};
@@ -96,7 +96,7 @@ pub(super) fn choose(
     setup: &PlateImpact,
     tolerance: f64,
     end_time: Option<f64>,
-) -> Result<Option<(Joined, Choice)>> {
+) -> Result<Option<(Assembled, Choice)>> {
     let plate = &setup.plate;
     if setup.fluid.is_some() || setup.outer.shape.is_mounted() || !holds(setup, [0.0; 2]) {
         return Ok(None);
@@ -112,14 +112,14 @@ pub(super) fn choose(
     let floor = validity::measured_error(patch, plate.thickness).filter(|_| !wide && holds(setup, patch));
     let Some(floor) = floor else { return Ok(None) };
     let approach = look.laws[0].approach(predictor.force_peak[0]) / predictor.force_peak[0];
-    let total = |lack: f64, next: &BendingMode| (lack + predictor.undamped(plate, next.omega)).hypot(floor);
+    let total = |truncation: f64, next: &BendingMode| (truncation + predictor.undamped(plate, next.omega)).hypot(floor);
     let own = own_error(plate) * amplified(predictor.repeated_contacts);
     let enough = |modes: &[BendingMode]| {
-        let lacks = lacks(plate, modes, &predictor);
-        let estimate = |(n, lack): (usize, &ModalTruncation)| {
-            (n, total(own + lack.error(approach, predictor.repeated_contacts), &modes[n]))
+        let truncations = truncations(plate, modes, &predictor);
+        let estimate = |(n, truncation): (usize, &ModalTruncation)| {
+            (n, total(own + truncation.error(approach, predictor.repeated_contacts), &modes[n]))
         };
-        lacks.iter().enumerate().skip(choice::LEAST).map(estimate).find(|(_, error)| *error <= tolerance)
+        truncations.iter().enumerate().skip(choice::LEAST).map(estimate).find(|(_, error)| *error <= tolerance)
     };
     let mut found = enough(&modes);
     while found.is_none() && modes.len() < MOST {
@@ -169,7 +169,7 @@ pub(super) fn choose(
         tried: vec![candidate],
         reason: REASON.to_owned(),
     };
-    Ok(Some((Joined { system, omega_next: modes[count].omega, fluid: None, warnings }, choice)))
+    Ok(Some((Assembled { system, omega_next: modes[count].omega, fluid: None, warnings }, choice)))
 }
 
 /// The plate with these `modes` alone, seen from points.
@@ -188,7 +188,7 @@ fn waves(plate: &Plate, modes: &[BendingMode]) -> ModalBody {
 #[derive(Debug, Clone, Copy, Default)]
 struct ModalTruncation {
     /// What they yield at the outer face times w/omega, m/N.
-    yielding: f64,
+    compliance: f64,
     /// What they yield between the faces times (w/omega)^2, over what the plate moves by.
     share: f64,
 }
@@ -197,30 +197,30 @@ impl ModalTruncation {
     /// Relative error of the forces, with the `approach` of the outer contact in m/N and so many `repeated_contacts` beyond the first of either
     /// body.
     fn error(&self, approach: f64, repeated_contacts: f64) -> f64 {
-        let once = BY_CONTACT * self.yielding / approach + BY_PLATE * self.share;
+        let once = BY_CONTACT * self.compliance / approach + BY_PLATE * self.share;
         once * amplified(repeated_contacts)
     }
 }
 
 /// What is lacking with the first n of the `modes`. Shape (modes).
-fn lacks(plate: &Plate, modes: &[BendingMode], predictor: &Predictor) -> Vec<ModalTruncation> {
+fn truncations(plate: &Plate, modes: &[BendingMode], predictor: &Predictor) -> Vec<ModalTruncation> {
     let (slow, patch) = (predictor.slow(), predictor.patch_radius);
-    let mut lacks = vec![ModalTruncation::default(); modes.len()];
+    let mut truncations = vec![ModalTruncation::default(); modes.len()];
     // a force of the contacts' frequency moves slower modes by their inertia
     let mut motion = if plate.edge == Edge::Free { 1.0 / (plate.mass() * slow * slow) } else { 0.0 };
-    let mut lack = ModalTruncation::default();
+    let mut truncation = ModalTruncation::default();
     for (n, mode) in modes.iter().enumerate().rev() {
         let phi = patch.map(|a| mode.under(a));
         let late = slow / mode.omega;
         // shapes grow as the root of the number and frequencies as its square: what is beyond the last goes on as its powers
         let beyond = |power: f64| if n + 1 == modes.len() { 1.0 + modes.len() as f64 / power } else { 1.0 };
-        lack.yielding += beyond(4.0) * late * (phi[0] / mode.omega).powi(2);
-        lack.share += beyond(6.0) * late.powi(2) * phi[0] * phi[1] / mode.omega.powi(2);
+        truncation.compliance += beyond(4.0) * late * (phi[0] / mode.omega).powi(2);
+        truncation.share += beyond(6.0) * late.powi(2) * phi[0] * phi[1] / mode.omega.powi(2);
         motion += phi[0] * phi[0] / (mode.omega.powi(2) + slow * slow);
-        lacks[n] = lack;
+        truncations[n] = truncation;
     }
-    for lack in &mut lacks {
-        lack.share /= motion;
+    for truncation in &mut truncations {
+        truncation.share /= motion;
     }
-    lacks
+    truncations
 }

@@ -6,7 +6,7 @@ mod closed_form;
 pub mod closed_forms;
 mod continua;
 pub mod errors;
-mod joined;
+mod assembled;
 mod laws;
 mod limits;
 mod predictor;

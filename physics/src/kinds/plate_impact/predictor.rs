@@ -2,7 +2,7 @@
 
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
-use crate::dynamics::kicks::{self, Kicked};
+use crate::dynamics::impulse_splitting::{self, SplittingPeak};
 use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::scene::Plate;
@@ -43,13 +43,13 @@ impl Predictor {
     /// 3e-4. A contact that presses much less is known to a half, its patch to a quarter: unless that is below `negligible` m, it takes a
     /// better look.
     pub(super) fn rough(system: &System, negligible: f64) -> Result<Self> {
-        let Some([outer, inner]) = kicks::run(system) else { return Self::of(system) };
+        let Some([outer, inner]) = impulse_splitting::run(system) else { return Self::of(system) };
         let patch = system.laws[1].contact_radius(inner.force_peak);
         let unknown = inner.force_peak < WEAK * outer.force_peak && patch > negligible;
         if unknown || inner.force_peak == 0.0 {
             return Self::of(system);
         }
-        let of = |contact: Kicked| (contact.force_peak, contact.impulse);
+        let of = |contact: SplittingPeak| (contact.force_peak, contact.impulse);
         Ok(Self::from(system, of(outer), Some(of(inner)), [outer.contacts, inner.contacts]))
     }
 

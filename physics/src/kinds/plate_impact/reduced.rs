@@ -5,7 +5,7 @@ mod run;
 use super::choice::ChoicePlan;
 use super::closed_form;
 use super::continua::Continua;
-use super::joined::{Joined, RequestedModes, continuum, kirchhoff, kirchhoff_plate};
+use super::assembled::{Assembled, RequestedModes, continuum, kirchhoff, kirchhoff_plate};
 use super::results::PlateQuantities;
 use super::shared::SharedBodies;
 use super::{MAX_MODES, PlateImpact};
@@ -117,7 +117,7 @@ impl Reduced {
             return Self::of(built, Model::C, scene.clone(), Some(choice));
         }
         let mut plan = ChoicePlan::new(&normal, tolerance)?;
-        let mut continua: Option<Joined> = plan.closed_form.then(|| plan.trials.closed_form(plan.modes));
+        let mut continua: Option<Assembled> = plan.closed_form.then(|| plan.trials.closed_form(plan.modes));
         while let Some(cut) = plan.cut {
             match continuum(setup, RequestedModes::Below(cut), &plan.trials.predictor, Continua::meshed(cache)) {
                 Ok(built) => {
@@ -137,8 +137,8 @@ impl Reduced {
         Self::of(built, plan.model, scene.clone(), Some(plan.choice()))
     }
 
-    fn of(built: Joined, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
-        let Joined { mut system, omega_next, fluid, mut warnings } = built;
+    fn of(built: Assembled, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
+        let Assembled { mut system, omega_next, fluid, mut warnings } = built;
         let memory = scene.plate_impact()?.memory(&system)?;
         let choice = choice.map(|choice| match memory {
             Some(_) => Choice {

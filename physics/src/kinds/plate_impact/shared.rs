@@ -2,7 +2,7 @@
 
 use super::PlateImpact;
 use super::continua::Continua;
-use super::joined::{join, kirchhoff_system};
+use super::assembled::{join, kirchhoff_system};
 use super::predictor::Predictor;
 use super::reduced::Reduced;
 use crate::body::cache::Cache;
@@ -68,7 +68,7 @@ impl SharedBodies {
         if self.continuum.is_none() {
             return Predictor::of(&kirchhoff_system(setup, DEFAULT_MODES, &self.kirchhoff)?);
         }
-        let plate = self.kirchhoff.rough_modes(&setup.plate, DEFAULT_MODES)?;
+        let plate = self.kirchhoff.initial_modes(&setup.plate, DEFAULT_MODES)?;
         Predictor::rough(&join(setup, plate, [0.0; 2])?, 0.0)
     }
 

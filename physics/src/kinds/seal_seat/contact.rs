@@ -150,7 +150,7 @@ impl<'a> ContactProblem<'a> {
         if let Some(traces) = &self.loads.traces {
             return traces.work;
         }
-        let work = |&i: &usize| self.force_vector(i).dot(&self.watch.yielded(i));
+        let work = |&i: &usize| self.force_vector(i).dot(&self.watch.deformation(i));
         0.5 * self.loads.active.iter().map(work).sum::<f64>()
     }
 
@@ -171,7 +171,7 @@ impl<'a> ContactProblem<'a> {
         }
         if let Some(traces) = &mut self.loads.traces {
             traces.pass(&self.push);
-            self.watch.keep_yielded();
+            self.watch.keep_deformation();
         }
     }
 
@@ -181,7 +181,7 @@ impl<'a> ContactProblem<'a> {
             self.collect_push();
         }
         if let Some(traces) = &mut self.loads.traces {
-            traces.book(&self.push, |i| self.watch.yielded_further(i));
+            traces.book(&self.push, |i| self.watch.further_deformation(i));
         }
     }
 
@@ -212,12 +212,12 @@ impl<'a> ContactProblem<'a> {
         // what they did.
         let mut known = self.watch.len();
         for iteration in 0..MOST {
-            known = self.yield_from(known, self.watch.up_to(&self.loads.active));
+            known = self.deform_from(known, self.watch.up_to(&self.loads.active));
             let worst = self.look_at_set(balls);
             let closed = self.loads.active.is_empty() || (worst <= 1.0 && iteration > 0);
             // A set that is sure to change is not solved to the end.
             let wrong = if closed {
-                known = self.yield_from(known, self.watch.len());
+                known = self.deform_from(known, self.watch.len());
                 self.mark_wrong(balls)
             } else {
                 self.fit(worst > CHORD * last)?;
@@ -246,10 +246,10 @@ impl<'a> ContactProblem<'a> {
     }
 
     /// Lets the residual yield in the slots from `known` to `end`; how many are known then.
-    fn yield_from(&mut self, known: usize, end: usize) -> usize {
+    fn deform_from(&mut self, known: usize, end: usize) -> usize {
         if known < end {
             self.collect_push();
-            self.watch.yield_under(self.nodes, &self.push, known..end);
+            self.watch.deform_under(self.nodes, &self.push, known..end);
         }
         known.max(end)
     }
@@ -369,8 +369,8 @@ mod tests {
                 for i in 0..n {
                     let at = Vector3::from_fn(|c, _| {
                         let row = 3 * i + c;
-                        let yields: f64 = (0..3 * n).map(|k| residual[row * 3 * n + k] * force[k]).sum();
-                        nodes.place[i][c] + modal[row] + yields - ball.centre[c]
+                        let deformation: f64 = (0..3 * n).map(|k| residual[row * 3 * n + k] * force[k]).sum();
+                        nodes.place[i][c] + modal[row] + deformation - ball.centre[c]
                     });
                     let distance = at.norm();
                     let (gap, load) = (distance - 10.0, contact.force(i));

@@ -145,17 +145,17 @@ impl<'a> SealSeatRun<'a> {
 
     fn step(&mut self) -> Result<()> {
         let step = self.options.step;
-        self.kick(0.5 * step);
+        self.apply_impulse(0.5 * step);
         self.drift(step);
         self.workspace.contact.pass();
         self.workspace.forces(self.system, &self.state, step, &mut self.forces)?;
-        self.kick(0.5 * step);
+        self.apply_impulse(0.5 * step);
         self.tally.steps += 1;
         self.sample();
         Ok(())
     }
 
-    fn kick(&mut self, step: f64) {
+    fn apply_impulse(&mut self, step: f64) {
         for (v, f) in self.state.modal_velocity.iter_mut().zip(&self.forces.modal) {
             *v += step * f;
         }

@@ -2,7 +2,7 @@
 
 use super::{Point, Reduced};
 use crate::dynamics::StopReason;
-use crate::dynamics::assured;
+use crate::dynamics::error_control;
 use crate::dynamics::contact_ledger::ContactLedger;
 use crate::dynamics::integration::{Converged, Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
 use crate::dynamics::ledger_check;
@@ -29,7 +29,7 @@ const MOMENT_LEFT: f64 = 0.01;
 /// Change of the inner body's velocity over the impact speed, in tolerances, below which its results are the integration's error.
 fn unresolved(system: &System, result: &Integration, tolerance: f64) -> Option<String> {
     let change = (result.velocity[1] - system.inner_velocity()).abs();
-    let error = assured::ENOUGH * tolerance * system.speed;
+    let error = error_control::ENOUGH * tolerance * system.speed;
     (result.contacts[1].force_peak > 0.0 && change < error).then(|| {
         format!(
             "the velocity of the inner body changes by {change:.1e} m/s, less than the {error:.1e} m/s that the time integration may be wrong by: its results show no more than that the plate hardly moves it"
@@ -97,13 +97,13 @@ impl Reduced {
         self.solved(tolerance, self.options(tolerance))
     }
 
-    /// As [`Reduced::point`] with all results right to `error`, as [`assured::all_within`] has it, or
+    /// As [`Reduced::point`] with all results right to `error`, as [`error_control::all_within`] has it, or
     /// [`Point::converged`] false.
     ///
     /// # Errors
     /// As [`Reduced::point`].
     pub fn all_within(&self, error: f64) -> Result<Point> {
-        self.solved(error, assured::all_within(error, self.options(error)))
+        self.solved(error, error_control::all_within(error, self.options(error)))
     }
 
     /// The results with `options`, whose ledger balances to `tolerance`.
@@ -112,7 +112,7 @@ impl Reduced {
         let result = self.impacts().all(&options)?.last;
         ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.least_tolerance))?;
         let enough =
-            options.results.unwrap_or(assured::ENOUGH * options.tolerance).max(result.least_tolerance);
+            options.results.unwrap_or(error_control::ENOUGH * options.tolerance).max(result.least_tolerance);
         Ok(Point {
             quantities: self.of_all_energy(quantities(&self.system, &result)?),
             energy_residual: result.energy_residual,
@@ -188,7 +188,7 @@ impl Reduced {
         let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
         let even_steps = result.least_tolerance > 0.0;
         let unsure =
-            result.error_estimate.filter(|error| !even_steps && *error > assured::ENOUGH * tolerance);
+            result.error_estimate.filter(|error| !even_steps && *error > error_control::ENOUGH * tolerance);
         let mut warnings = scene::doubts(&self.scene);
         warnings.extend(self.warnings.iter().cloned());
         warnings.extend(truncation.warning);
@@ -289,7 +289,7 @@ impl Reduced {
 /// Contacts that nearly join, part or touch once more, so that their number may be another.
 fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
     let error = result.error_estimate.unwrap_or(0.0).max(tolerance);
-    let near = |contact: &ContactLedger| contact.least_turn <= assured::ENOUGH * error;
+    let near = |contact: &ContactLedger| contact.least_turn <= error_control::ENOUGH * error;
     let bodies = ["outer", "inner"].into_iter().zip(&result.contacts);
     bodies
         .filter(|(_, contact)| contact.contacts > 0 && near(contact))

@@ -36,7 +36,7 @@ const TIGHTEST: f64 = 1e-12;
 /// have converged.
 const LONG: u64 = 100_000;
 /// Tolerances above this ask for a rough answer: it is not looked whether the impact amplifies errors.
-pub const ROUGH: f64 = 1e-4;
+pub const LOW_ACCURACY: f64 = 1e-4;
 /// Difference of velocities and force peaks that is in order, in tolerances.
 pub const ENOUGH: f64 = 10.0;
 
@@ -82,7 +82,7 @@ pub fn all_within(error: f64, options: Options) -> Options {
 ///
 /// # Errors
 /// Those of `run` at the tolerance asked for.
-pub fn assured(
+pub fn controlled(
     options: &Options,
     system: &System,
     run: impl Fn(&Options) -> Result<Integration>,
@@ -114,7 +114,7 @@ fn repeated(
     let mut best = at(options.tolerance)?;
     let right = match options.results {
         Some(error) => is_clear(system, &best, error),
-        None => options.tolerance > ROUGH || is_simple(system, &best, options.tolerance),
+        None => options.tolerance > LOW_ACCURACY || is_simple(system, &best, options.tolerance),
     };
     if right {
         return Ok(best);

@@ -15,13 +15,13 @@ pub(crate) const DOCUMENT: &str = "comparison.json";
 const OVERVIEW: &str = "overview";
 
 /// A scene whose results stand in a folder.
-pub(crate) struct Standing {
+pub(crate) struct ExistingScene {
     pub(crate) overview: Overview,
     /// Its entry of the document, if it was not part of this run.
     earlier: Option<Value>,
 }
 
-impl Standing {
+impl ExistingScene {
     /// Whether it was not part of this run.
     pub(crate) fn is_earlier(&self) -> bool {
         self.earlier.is_some()
@@ -46,7 +46,7 @@ impl Standing {
 /// A folder of a report: this run, and all scenes whose results stand there.
 pub struct Folder<'a> {
     pub(super) report: &'a Report<'a>,
-    pub(super) scenes: &'a [Standing],
+    pub(super) scenes: &'a [ExistingScene],
 }
 
 /// The document as it is written and read again.
@@ -58,27 +58,27 @@ struct ReportDocument {
 }
 
 /// The scenes of `report`.
-pub(crate) fn of_run(report: &Report) -> Vec<Standing> {
-    report.scenes.iter().map(|scene| Standing { overview: Overview::of(scene), earlier: None }).collect()
+pub(crate) fn of_run(report: &Report) -> Vec<ExistingScene> {
+    report.scenes.iter().map(|scene| ExistingScene { overview: Overview::of(scene), earlier: None }).collect()
 }
 
 /// The scenes of `report` in the places that they had in the document in `dir`, the others there whose pages are there, and
 /// what is new. A document that can't be read keeps nothing.
-pub(crate) fn in_folder(report: &Report, dir: &Path) -> Vec<Standing> {
+pub(crate) fn in_folder(report: &Report, dir: &Path) -> Vec<ExistingScene> {
     let mut run = of_run(report);
-    let mut standing = Vec::new();
+    let mut existing = Vec::new();
     for entry in entries(dir) {
         let Ok(overview) = Overview::deserialize(&entry[OVERVIEW]) else { continue };
         match run.iter().position(|new| new.overview.scene == overview.scene) {
-            Some(place) => standing.push(run.remove(place)),
+            Some(place) => existing.push(run.remove(place)),
             None if dir.join(format!("{}.html", overview.scene)).is_file() => {
-                standing.push(Standing { overview, earlier: Some(entry) });
+                existing.push(ExistingScene { overview, earlier: Some(entry) });
             }
             None => {}
         }
     }
-    standing.extend(run);
-    standing
+    existing.extend(run);
+    existing
 }
 
 fn entries(dir: &Path) -> Vec<Value> {
@@ -88,17 +88,17 @@ fn entries(dir: &Path) -> Vec<Value> {
 }
 
 /// The worst of the scenes' verdicts.
-pub(crate) fn verdict(standing: &[Standing]) -> Verdict {
-    Verdict::worst(standing.iter().map(|scene| scene.overview.verdict))
+pub(crate) fn verdict(existing: &[ExistingScene]) -> Verdict {
+    Verdict::worst(existing.iter().map(|scene| scene.overview.verdict))
 }
 
 /// Pretty JSON of all scenes, ending with a line break.
 ///
 /// # Errors
 /// [`Error::Internal`] if it can't be serialised.
-pub(crate) fn document(report: &Report, standing: &[Standing]) -> Result<String> {
+pub(crate) fn document(report: &Report, existing: &[ExistingScene]) -> Result<String> {
     let internal = |e: serde_json::Error| Error::Internal(format!("writing the comparison as JSON: {e}"));
-    let entry = |scene: &Standing| {
+    let entry = |scene: &ExistingScene| {
         let is_same = |of_run: &&SceneReport| of_run.comparison.scene == scene.overview.scene;
         match (&scene.earlier, report.scenes.iter().find(is_same)) {
             (None, Some(of_run)) => {
@@ -111,8 +111,8 @@ pub(crate) fn document(report: &Report, standing: &[Standing]) -> Result<String>
     };
     let document = ReportDocument {
         schema_version: SCHEMA_VERSION,
-        verdict: verdict(standing).name().into(),
-        scenes: standing.iter().map(entry).collect::<std::result::Result<_, _>>().map_err(internal)?,
+        verdict: verdict(existing).name().into(),
+        scenes: existing.iter().map(entry).collect::<std::result::Result<_, _>>().map_err(internal)?,
     };
     Ok(serde_json::to_string_pretty(&document).map_err(internal)? + "\n")
 }
