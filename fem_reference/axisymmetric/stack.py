@@ -16,7 +16,7 @@ from ..common.arrays import Floats, Ints
 from ..common.bodies import Stack
 from ..common.errors import SceneError
 from ..explicit import structures
-from .elasticity import BodyMatrices, assemble, scatter
+from .elasticity import BodyMatrices, assemble, global_matrix
 from .elements import ElementMatrices
 from .mesh import BodyMesh
 
@@ -90,7 +90,7 @@ class StackBody:
         nodes = np.minimum(elements.nodes, self.count - 1)
         mass = np.bincount(nodes.ravel(), elements.mass.ravel(), minlength=self.count)
         return BodyMatrices(
-            scatter(nodes, elements.stiffness, self.count),
+            global_matrix(nodes, elements.stiffness, self.count),
             np.asarray(mass, dtype=np.float64),
             ElementMatrices(nodes, elements.stiffness, elements.mass),
         )

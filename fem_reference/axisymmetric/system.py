@@ -16,7 +16,7 @@ from ..explicit.contact import Contact, MatchedContact, RigidBody
 from ..explicit.film import Film
 from ..explicit.parts import Rows
 from ..explicit.plastic import Plasticity
-from .elasticity import BodyMatrices, scatter
+from .elasticity import BodyMatrices, global_matrix
 from .mesh import BodyMesh
 from .stack import StackBody
 from .tip import ring_edges
@@ -95,7 +95,7 @@ class AxisymmetricSystem:
         """(2n, 2n) stiffness of some elements (m,), or of all, N/m."""
         which = slice(None) if chosen is None else chosen
         nodes, stiffness = self.element_nodes[which], self.element_stiffness[which]
-        return scatter(nodes, stiffness, self.mass.size)
+        return global_matrix(nodes, stiffness, self.mass.size)
 
     def operator(self) -> Rows:
         """K for the compiled loop."""

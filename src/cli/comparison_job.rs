@@ -4,7 +4,7 @@ use super::requested_model::RequestedModel;
 use super::compare_arguments::Arguments;
 use super::compare_inputs;
 use super::external;
-use super::scatter::scatter;
+use super::propagated::propagate;
 use super::second_program;
 use super::stored_references::{look_up, report_reused};
 use super::{Context, kinds, validated_scenes};
@@ -171,7 +171,7 @@ impl<'a> Job<'a> {
             context.note(format_args!("scene `{}` has no discrepancy budget: {error}", scene.name));
             Vec::new()
         });
-        let scatters = scatter(context, file, scene, reduced).unwrap_or_else(|error| {
+        let propagations = propagate(context, file, scene, reduced).unwrap_or_else(|error| {
             context.note(format_args!(
                 "scene `{}` is compared as if its inputs were certain: {error}",
                 scene.name
@@ -180,12 +180,12 @@ impl<'a> Job<'a> {
         });
         let how = (self.arguments.bandwidth, self.arguments.speed);
         let measured = (!self.records.is_empty())
-            .then(|| measured::compare(scene, &self.records, reference, reduced, how, &scatters));
+            .then(|| measured::compare(scene, &self.records, reference, reduced, how, &propagations));
         let input = ComparisonInput {
             coarser: coarser.as_ref().map(|(stored, reduced)| (&stored.outcome, &reduced[..])),
             other: other.as_ref().map(|other| &other.outcome),
             measured: measured.transpose()?,
-            scatters,
+            propagations,
             accepted: acceptance::checks(&acceptances, &reference.summary, self.resolution()),
             changed_tolerances: compare_inputs::changed_tolerances(file, &acceptances)?,
             budget,

@@ -20,7 +20,7 @@ mod optimise;
 mod progress;
 mod reduced;
 mod reference;
-mod scatter;
+mod propagated;
 mod schema;
 mod second_program;
 mod shell;

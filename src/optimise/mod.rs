@@ -184,10 +184,10 @@ impl Problem {
         let varied = variables.iter().flat_map(|variable| {
             variable.fields.iter().map(|field| (field.path(), [variable.low, variable.high]))
         });
-        let scattered = robust.as_ref().map_or_else(Vec::new, |robust| robust.ranges(&variables));
+        let perturbed = robust.as_ref().map_or_else(Vec::new, |robust| robust.ranges(&variables));
         let impacts = if robust.is_some() { IMPACTS * robust::SAMPLES } else { IMPACTS };
         // the first that names a field is believed
-        let ranges = scattered.into_iter().chain(varied);
+        let ranges = perturbed.into_iter().chain(varied);
         let scene = template.scene();
         if !kinds::of(scene).models().contains(&model) {
             return Err(Error::Usage(format!("--model {model}: {}", kinds::models_only(scene))));

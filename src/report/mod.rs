@@ -25,7 +25,7 @@ pub(crate) use ci::junit::{integrity_failure as check_failure, in_words as row_i
 pub use ci::markdown::markdown;
 pub use export::{Export, FigureFile, curves_csv, figure_format, history_format, json};
 pub use figure::curves::curves_chart;
-pub use figure::scatter::scatter_figure;
+pub use figure::propagated::propagation_figure;
 pub use figure::scene::{FIGURE_WIDTHS, figure, measured_figure, printed_figure};
 pub use figure::sweep::{Drawn, sweep_figure};
 pub use kinds::{Arrow, seat_picture};

@@ -4,7 +4,7 @@ use super::design::{MOST_INPUTS, MOST_ROWS, REPLICATES};
 use super::draw::Inputs;
 use super::estimate::{Row, mean, standard_deviation};
 use super::request::{Request, Samples};
-use super::scatter::{SampledImpacts, Scatter};
+use super::propagated::{SampledImpacts, PropagatedUncertainty};
 use crate::error::{Error, Result};
 use crate::kinds;
 use crate::scene::{Field, Scene, Template, Uncertainty};
@@ -103,7 +103,7 @@ pub fn study(
     request: &Request,
     folder: Option<(&Path, TableFormat)>,
     on_progress: &(dyn Fn(Progress) + Sync),
-) -> Result<Scatter> {
+) -> Result<PropagatedUncertainty> {
     let scene = template.scene();
     let uncertainty = uncertainty_of(scene)?;
     let inputs = Inputs::new(uncertainty, request.seed)
@@ -163,10 +163,10 @@ pub fn study(
         rows: growing.rows(rows, quantity),
     };
     let quantities = kinds::of(scene).quantities().iter().filter(|quantity| !quantity.is_count);
-    let mut scatter = Scatter::of(scene, request, inputs, quantities.map(|q| (q.name, q.unit, of(q.name))));
-    (scatter.samples, scatter.impacts, scatter.failures, scatter.accurate) =
+    let mut propagated = PropagatedUncertainty::of(scene, request, inputs, quantities.map(|q| (q.name, q.unit, of(q.name))));
+    (propagated.samples, propagated.impacts, propagated.failures, propagated.accurate) =
         (rows, plan.len(), lost, reached);
-    scatter.notes.extend(failure.map(|record| {
+    propagated.notes.extend(failure.map(|record| {
         let reason = record.outcome.reason();
         format!(
             "{lost} of {} impacts have no result and their rows are omitted; the first: {reason}",
@@ -175,18 +175,18 @@ pub fn study(
     }));
     let open = records.iter().filter(|record| plan.value(record, "converged") == Some(0.0)).count();
     if open > 0 {
-        scatter.notes.push(format!(
+        propagated.notes.push(format!(
             "the time integration of {open} of {} impacts did not converge to {TOLERANCE:.0e}: their contacts amplify every error, which adds to the standard deviations",
             plan.len()
         ));
     }
     if reached == Some(false) {
-        scatter
+        propagated
             .notes
             .push(format!("{rows} samples do not reach the requested accuracy; this is the largest number"));
     }
     if let Some((dir, format)) = folder {
         Table::join(plan, dir, Shard::WHOLE)?.write(dir, "samples", format)?;
     }
-    Ok(scatter)
+    Ok(propagated)
 }

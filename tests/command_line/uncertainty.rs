@@ -7,7 +7,7 @@ use std::fs;
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/uncertainty/table1-r10.toml");
 
 #[test]
-fn the_scatter_of_a_scene_is_found_and_a_study_goes_on_where_it_stopped() {
+fn the_input_uncertainty_of_a_scene_is_propagated_and_a_study_resumes() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let study = |samples: &str| {

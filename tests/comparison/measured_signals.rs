@@ -195,7 +195,7 @@ fn one_signal_is_enough_and_missing_free_flight_is_reported() {
 }
 
 #[test]
-fn models_are_measured_by_the_same_metrics_and_a_series_by_mean_and_scatter() {
+fn models_have_the_same_metrics_and_a_series_has_mean_and_standard_deviation() {
     let (scene, _) = scene("scaled-plate-r10");
     let (truth, reference) = (model(&scene, Model::C), reference(&scene));
     let records: Vec<Record> = (1..=3)

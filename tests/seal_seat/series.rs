@@ -61,8 +61,8 @@ fn the_direction_is_smooth_in_the_dimensions() {
             ([1.0, s, s * s, s * s * s], angle.to_degrees())
         };
         let cubic = fit(&(-4..=4).map(row).collect::<Vec<_>>()).expect("nine directions");
-        assert!(cubic.scatter < 0.02, "{name}: {cubic:?}");
-        assert!(cubic.coefficients[1].abs() > 5.0 * cubic.scatter, "{name} turns the flight: {cubic:?}");
+        assert!(cubic.deviation < 0.02, "{name}: {cubic:?}");
+        assert!(cubic.coefficients[1].abs() > 5.0 * cubic.deviation, "{name} turns the flight: {cubic:?}");
     }
 }
 

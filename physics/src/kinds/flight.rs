@@ -67,7 +67,7 @@ pub fn flight_summary(scene: &Scene, launch: Launch, restitution: f64) -> Result
 
 fn flown(scene: &Scene, launch: Launch, restitution: f64) -> Result<(FlightSummary, Ending)> {
     let (setup, landscape) = flight_of(scene, restitution)?;
-    let judged = judge(&setup, &landscape, &launch, &settings(scene)?.scatter);
+    let judged = judge(&setup, &landscape, &launch, &settings(scene)?.deviation);
     let ending = judged.flight.ending;
     let summary = FlightSummary {
         seat: ending.seat(),

@@ -8,7 +8,7 @@ pub(crate) mod landing_map;
 pub(crate) mod lines;
 mod panel;
 mod residuals;
-pub(crate) mod scatter;
+pub(crate) mod propagated;
 pub(crate) mod scene;
 pub(crate) mod scene_drawing;
 pub(crate) mod sweep;

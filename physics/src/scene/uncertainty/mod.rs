@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn scatter_moves_with_the_nominal_value() {
+    fn distributions_move_with_the_nominal_value() {
         let relative = input(2.0, Distribution::Normal(Spread::Relative(0.01))).about(4.0);
         assert_eq!(relative.standard_deviation(), 0.04);
         let bounds = input(2.0, Distribution::Uniform { low: 1.5, high: 2.25 }).about(4.0);

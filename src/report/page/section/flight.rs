@@ -82,18 +82,18 @@ fn percent(share: f64) -> String {
 fn pictures(scene: &Scene, summary: &FlightSummary) -> Markup {
     let Ok((setup, landscape)) = flight_of(scene, summary.restitution) else { return html! {} };
     let flight = fly(&setup, &landscape, &summary.launch, true);
-    let Some(scatter) = scene.flight.as_ref().map(|flight| flight.scatter) else { return html! {} };
+    let Some(deviation) = scene.flight.as_ref().map(|flight| flight.deviation) else { return html! {} };
     let shaken =
         scene.vibration.as_ref().and_then(|vibration| vibration_chart(&setup, &landscape, vibration));
     html! {
         figure {
-            (section(&setup, &flight, &summary.launch, scatter.angle))
+            (section(&setup, &flight, &summary.launch, deviation.angle))
             (landscape_picture(&setup, &landscape, &summary.launch))
             figcaption { "The chamber in section with the path of the sphere's centre until its seat is certain, the seats (dashed) and the band of the launch's \
                 angle. Below: the least energy with which the sphere can be at x, its saddle, and the energy of the launch (dashed)." }
         }
         figure {
-            (PreEscaped(map_picture(&setup, &landscape, summary, &scatter)))
+            (PreEscaped(map_picture(&setup, &landscape, summary, &deviation)))
             figcaption { "Outcome over speed and angle of the release (ring: this release). Below: releases within the range of the share above." }
         }
         @if let Some(chart) = shaken {
@@ -107,7 +107,7 @@ fn pictures(scene: &Scene, summary: &FlightSummary) -> Markup {
 }
 
 /// The chamber up to what the path reaches.
-fn section(setup: &Setup, flight: &Flight, launch: &Launch, scatter: f64) -> Markup {
+fn section(setup: &Setup, flight: &Flight, launch: &Launch, deviation: f64) -> Markup {
     let [low, high] = setup.chamber.columns().map(|x| x * (1.0 + setup.radius / x.abs().max(1e-12)));
     let highest = flight.path.iter().map(|state| state.place.y).fold(setup.chamber.seats()[0].y, f64::max);
     let top = (highest + 1.2 * setup.radius).min(setup.chamber.ceiling() + setup.radius);
@@ -125,7 +125,7 @@ fn section(setup: &Setup, flight: &Flight, launch: &Launch, scatter: f64) -> Mar
     };
     let drawing = html! {
         polygon.fig-hollow points=(scale.points(&corners)) stroke="#9a7f3c" stroke-width="1.5" {}
-        @for side in [-1.0, 1.0] { polyline points=(scale.points(&ray(launch.angle + side * scatter))) fill="none" stroke="#777" stroke-width="1" {} }
+        @for side in [-1.0, 1.0] { polyline points=(scale.points(&ray(launch.angle + side * deviation))) fill="none" stroke="#777" stroke-width="1" {} }
         @for seat in seats {
             circle cx=(x2(scale.x(seat.x))) cy=(x2(scale.z(seat.y))) r=(x2(setup.radius * factor)) fill="none" stroke="#777" stroke-dasharray="4 3" {}
         }

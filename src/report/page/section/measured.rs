@@ -150,10 +150,10 @@ pub(crate) fn sentence(measured: &Measured) -> String {
     };
     let mean = significant(100.0 * series.mean, 4);
     match series.standard_deviation {
-        Some(scatter) => {
-            let scatter = significant(100.0 * scatter, 2);
+        Some(deviation) => {
+            let deviation = significant(100.0 * deviation, 2);
             format!(
-                "Measured efficiency of {} impacts: mean {mean} %, standard deviation {scatter} points.",
+                "Measured efficiency of {} impacts: mean {mean} %, standard deviation {deviation} points.",
                 series.count
             )
         }
