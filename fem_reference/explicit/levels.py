@@ -22,7 +22,9 @@ BUFFER = 2
 MOST_LEVELS = 5
 
 
-def graded_levels(steps: Floats, nodes: Ints, contact_nodes: npt.NDArray[np.bool_], most: int) -> Ints:
+def graded_levels(
+    steps: Floats, nodes: Ints, contact_nodes: npt.NDArray[np.bool_], most: int
+) -> Ints:
     """(m,) level of each element of any mesh.
 
     Args:

@@ -245,8 +245,12 @@ class SerialLoop(Loop):
         system, arrays = self.system, kernel.Arrays()
         local_nodes = np.concatenate([system.owned, system.ghosts])
         # The supports' share of a node is its own process'.
-        supported = system.supported[local_nodes] & (np.arange(local_nodes.size) < system.owned.size)
-        self.divided = self._stiffness.divided(element, node[local_nodes], supported, self.threads, arrays)
+        supported = system.supported[local_nodes] & (
+            np.arange(local_nodes.size) < system.owned.size
+        )
+        self.divided = self._stiffness.divided(
+            element, node[local_nodes], supported, self.threads, arrays
+        )
         made = self.divided.parts
         parts = (structures.PARTS[self.components] * len(made))(*made)
         self._state.levels = len(made) // self.threads

@@ -15,7 +15,9 @@ SLACK = 0.02
 """Share of a level that a part may have more or less of, so that its border is smoother."""
 
 
-def owners(points: Floats, elements: Ints, steps: Floats, contact_nodes: Ints, processes: int) -> Ints:
+def owners(
+    points: Floats, elements: Ints, steps: Floats, contact_nodes: Ints, processes: int
+) -> Ints:
     """(m,) process of each element; those at nodes that can touch are all the first one's.
 
     Meshes grow away from the contacts, so the parts are cones and sectors from there: cut in two

@@ -396,7 +396,11 @@ def build_system(
         displacement[beam], velocity[beam], tip = strike.displacement, strike.velocity, beam[-1]
     if stack is not None:
         displacement, first_contact, rod = np.zeros_like(velocity), stack.first_contact, numbers[0]
-        displacement[rod], velocity[rod], tip = first_contact.displacement, first_contact.velocity, rod[-1]
+        displacement[rod], velocity[rod], tip = (
+            first_contact.displacement,
+            first_contact.velocity,
+            rod[-1],
+        )
     return AxisymmetricSystem(
         stiffness=scipy.sparse.block_diag(stiffness, format="csr"),
         points=np.concatenate(points),

@@ -39,7 +39,9 @@ def small(**changes: Any) -> Scene:
     """A small plate hit hard: about 60 steps of some hundred nodes."""
     requested = {"geometry": "axisymmetric", "elements_per_contact_radius": 8}
     sizes = {"plate__radius": 0.012, "outer__radius": 0.005, "inner__radius": 0.005}
-    return parse_scene(document(**{"reference": requested, **sizes, "outer__speed": 2.0, **changes}))
+    return parse_scene(
+        document(**{"reference": requested, **sizes, "outer__speed": 2.0, **changes})
+    )
 
 
 def solved(scene: Scene, folder: Path, factor: float) -> calculix.Solution:

@@ -301,5 +301,7 @@ def test_stress_relaxes_under_a_strain_that_stays() -> None:
     retained: Floats = loop.effective / np.where(loop.u == 0.0, 1.0, loop.u)
     rows = system.body(PLATE)
     left = 1.0 - sum(t["ratio"] * (1.0 - math.exp(-1e-5 / t["time"])) for t in TERMS)
-    assert np.allclose(retained[rows][1::2][stretched[system.first[1] : system.first[2], 1] != 0], left)
+    assert np.allclose(
+        retained[rows][1::2][stretched[system.first[1] : system.first[2], 1] != 0], left
+    )
     assert np.allclose(loop.effective[system.body(OUTER)], loop.u[system.body(OUTER)])

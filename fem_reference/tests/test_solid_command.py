@@ -134,7 +134,9 @@ def test_a_killed_run_goes_on_to_the_same_result(folder: Path, whole: Path) -> N
     out, states_folder = folder / "resumed", folder / "kept"
     provenance = json.loads((whole / "provenance.json").read_text(encoding="utf-8"))
     tried = provenance["settings"]["meshes_tried"]
-    start = command(scene(folder), out, "--checkpoint", str(states_folder), "--checkpoint-interval", "0")
+    start = command(
+        scene(folder), out, "--checkpoint", str(states_folder), "--checkpoint-interval", "0"
+    )
     with subprocess.Popen(
         start, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as process:

@@ -10,7 +10,7 @@ mod samples;
 mod scene;
 
 use detached::detached;
-use impactcheck::cli::in_process::{self, RequestedModel, Comparing, ModelRequest};
+use impactcheck::cli::in_process::{self, Comparing, ModelRequest, RequestedModel};
 use impactcheck::interrupt;
 use impactcheck::kinds::SharedBodies;
 use impactcheck::result::Outcome;

@@ -1,7 +1,7 @@
 //! What `compare` and `gate` are both asked.
 
-use super::requested_model::{self, RequestedModel};
 use super::external::Permission;
+use super::requested_model::{self, RequestedModel};
 use super::{JsonArgument, compare_inputs};
 use crate::measured::Speed;
 use crate::reference::Resolution;

@@ -1,10 +1,10 @@
 //! A comparison from scenes to the report: what `compare` and `gate` do alike.
 
-use super::requested_model::RequestedModel;
 use super::compare_arguments::Arguments;
 use super::compare_inputs;
 use super::external;
 use super::propagated::propagate;
+use super::requested_model::RequestedModel;
 use super::second_program;
 use super::stored_references::{look_up, report_reused};
 use super::{Context, kinds, validated_scenes};
@@ -68,7 +68,8 @@ impl<'a> Job<'a> {
     pub(super) fn of(arguments: &'a Arguments, scenes: Vec<(PathBuf, Scene)>) -> Result<Self> {
         let start = Instant::now();
         compare_inputs::named_apart(&scenes)?;
-        if let (Some(tolerance), false) = (arguments.tolerance, arguments.models.contains(&RequestedModel::Auto))
+        if let (Some(tolerance), false) =
+            (arguments.tolerance, arguments.models.contains(&RequestedModel::Auto))
         {
             return Err(Error::Usage(format!(
                 "--tolerance {tolerance} is for the model auto, which is not among --models"

@@ -1,7 +1,7 @@
 //! `impactcheck coverage`: which features of scenes are held against an independent solution.
 
-use super::requested_model::RequestedModel;
 use super::external::{self, Permission};
+use super::requested_model::RequestedModel;
 use super::{Context, JsonArgument, compare_inputs, kinds};
 use crate::comparison::compare_scene;
 use crate::coverage::{CLOSED_FORM, Case, Coverage, Finding, coverage, exact};

@@ -1,13 +1,13 @@
 //! What the commands compute, for programs that hold scenes in memory, as the Python package does: the same models, defaults,
 //! bounds and sentences; nothing is printed.
 
-pub use super::requested_model::RequestedModel;
 pub use super::requested_model::ModelRequest;
+pub use super::requested_model::RequestedModel;
 
-use super::requested_model::within_bounds;
 use super::compare_arguments::Arguments;
 use super::comparison_job::Job;
 use super::optimise::{self, Solved};
+use super::requested_model::within_bounds;
 use super::{Context, compare_inputs, kinds, stored_references};
 use crate::comparison::Comparison;
 use crate::error::{Error, Result};

@@ -1,6 +1,5 @@
 //! The command line: one file per command, no physics.
 
-mod requested_model;
 mod bench;
 mod calibrate;
 mod compare;
@@ -18,9 +17,10 @@ mod mesh;
 mod new;
 mod optimise;
 mod progress;
+mod propagated;
 mod reduced;
 mod reference;
-mod propagated;
+mod requested_model;
 mod schema;
 mod second_program;
 mod shell;

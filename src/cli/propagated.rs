@@ -5,7 +5,7 @@ use super::progress::Counter;
 use crate::error::Result;
 use crate::result::Outcome;
 use crate::scene::{Model, Scene, Template};
-use crate::uncertainty::{Request, PropagatedUncertainty, study};
+use crate::uncertainty::{PropagatedUncertainty, Request, study};
 use std::collections::BTreeMap;
 use std::path::Path;
 

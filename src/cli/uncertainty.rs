@@ -1,7 +1,7 @@
 //! `impactcheck uncertainty`: how the results scatter with the inputs.
 
-use super::requested_model;
 use super::progress::Counter;
+use super::requested_model;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
@@ -10,7 +10,9 @@ use crate::kinds::{KINDS, Use};
 use crate::report::{self, FigureFile, figure_format};
 use crate::scene::{self, Model, Template, suggestion};
 use crate::table_format::TableFormat;
-use crate::uncertainty::{QuantityUncertainty, Request, Samples, PropagatedUncertainty, Share, study, uncertainty_of};
+use crate::uncertainty::{
+    PropagatedUncertainty, QuantityUncertainty, Request, Samples, Share, study, uncertainty_of,
+};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;

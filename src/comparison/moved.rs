@@ -212,7 +212,8 @@ mod tests {
         let b = document(json!([model("C", "pass", 0.4, 0.4)]));
         let moves = moved(&a, &b, 0.0);
         assert!(moves.moved.is_empty());
-        let found: Vec<_> = moves.verdicts.iter().map(|v| (&*v.model, v.a.is_some(), v.b.is_some())).collect();
+        let found: Vec<_> =
+            moves.verdicts.iter().map(|v| (&*v.model, v.a.is_some(), v.b.is_some())).collect();
         assert_eq!(found, [("B", true, false), ("C", false, true)]);
     }
 }

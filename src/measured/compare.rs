@@ -136,7 +136,8 @@ pub fn compare(
                     Some(SampledCurve { quantity, values })
                 })
                 .collect();
-            let (validation, area) = efficiency.assessed(&outcome.summary, propagated_of(propagations, partner));
+            let (validation, area) =
+                efficiency.assessed(&outcome.summary, propagated_of(propagations, partner));
             Ok(MeasuredComparison {
                 partner: partner.to_owned(),
                 efficiency: outcome.summary.value("efficiency"),
@@ -182,7 +183,11 @@ impl Efficiency {
 
     /// What the difference of a result shows, given its propagated input uncertainty `propagated`, and the area between both
     /// distributions.
-    fn assessed(&self, summary: &Summary, propagated: Option<&PropagatedUncertainty>) -> (Option<Assessment>, Option<Area>) {
+    fn assessed(
+        &self,
+        summary: &Summary,
+        propagated: Option<&PropagatedUncertainty>,
+    ) -> (Option<Assessment>, Option<Area>) {
         let propagated = propagated.and_then(|propagated| propagated.quantities.get("efficiency"));
         let Some((error, propagated)) = self.difference(summary).zip(propagated) else { return (None, None) };
         let assessment = Assessment::of(error, (numerical(summary, "efficiency"), self.u_d), propagated);

@@ -138,8 +138,9 @@ impl CostFunction for Misfit<'_> {
             let Some(curve) = self.model.curve(quantity) else { continue };
             let row = |(t, y): &(f64, f64)| ([1.0, *t, curve(t - further)], *y);
             let rows: Vec<([f64; 3], f64)> = points.iter().map(row).collect();
-            total += fit(&rows)
-                .map_or(rows.len() as f64, |found| (rows.len() - 3) as f64 * (found.deviation / scale).powi(2));
+            total += fit(&rows).map_or(rows.len() as f64, |found| {
+                (rows.len() - 3) as f64 * (found.deviation / scale).powi(2)
+            });
         }
         Ok(total)
     }

@@ -6,12 +6,12 @@
 pub mod design;
 mod draw;
 pub mod estimate;
-mod request;
 mod propagated;
+mod request;
 mod study;
 pub mod validation;
 
 pub use draw::Inputs;
-pub use request::{Request, Samples, DEFAULT_QUANTITIES};
-pub use propagated::{Correlated, Input, Local, QuantityUncertainty, PropagatedUncertainty, Share};
+pub use propagated::{Correlated, Input, Local, PropagatedUncertainty, QuantityUncertainty, Share};
+pub use request::{DEFAULT_QUANTITIES, Request, Samples};
 pub use study::{study, uncertainty_of};

@@ -3,8 +3,8 @@
 use super::design::{MOST_INPUTS, MOST_ROWS, REPLICATES};
 use super::draw::Inputs;
 use super::estimate::{Row, mean, standard_deviation};
+use super::propagated::{PropagatedUncertainty, SampledImpacts};
 use super::request::{Request, Samples};
-use super::propagated::{SampledImpacts, PropagatedUncertainty};
 use crate::error::{Error, Result};
 use crate::kinds;
 use crate::scene::{Field, Scene, Template, Uncertainty};
@@ -163,7 +163,8 @@ pub fn study(
         rows: growing.rows(rows, quantity),
     };
     let quantities = kinds::of(scene).quantities().iter().filter(|quantity| !quantity.is_count);
-    let mut propagated = PropagatedUncertainty::of(scene, request, inputs, quantities.map(|q| (q.name, q.unit, of(q.name))));
+    let mut propagated =
+        PropagatedUncertainty::of(scene, request, inputs, quantities.map(|q| (q.name, q.unit, of(q.name))));
     (propagated.samples, propagated.impacts, propagated.failures, propagated.accurate) =
         (rows, plan.len(), lost, reached);
     propagated.notes.extend(failure.map(|record| {

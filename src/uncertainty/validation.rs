@@ -10,7 +10,7 @@
 use crate::format::{prefixed, with_unit, words};
 use crate::result::Summary;
 use crate::scene::Model;
-use crate::uncertainty::{QuantityUncertainty, PropagatedUncertainty};
+use crate::uncertainty::{PropagatedUncertainty, QuantityUncertainty};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -86,7 +86,10 @@ impl Shown {
 
 /// Propagated input uncertainty of the result called `name`: that of its own model if there is one, else of model C, which stands for
 /// the reference and for other programs.
-pub fn propagated_of<'s>(propagations: &'s BTreeMap<String, PropagatedUncertainty>, name: &str) -> Option<&'s PropagatedUncertainty> {
+pub fn propagated_of<'s>(
+    propagations: &'s BTreeMap<String, PropagatedUncertainty>,
+    name: &str,
+) -> Option<&'s PropagatedUncertainty> {
     propagations.get(name).or_else(|| propagations.get(&Model::C.to_string()))
 }
 
@@ -227,7 +230,11 @@ mod tests {
             found.would_decide.expect("none shown")
         };
         // u_val has to fall to 0.02: thickness from 0.024 to sqrt(0.02^2 - 0.018^2) = 0.00872, 36 % of it
-        assert!(sentence(0.04).contains("`thickness` (64 % of u_val^2) known to 36 % of"), "{}", sentence(0.04));
+        assert!(
+            sentence(0.04).contains("`thickness` (64 % of u_val^2) known to 36 % of"),
+            "{}",
+            sentence(0.04)
+        );
         assert!(sentence(0.02).contains("all inputs known better would"), "{}", sentence(0.02));
         let coarse = Assessment::of(0.02, (None, Some(0.03)), &propagated()).expect("numbers");
         assert!(coarse.would_decide.expect("none shown").starts_with("no input known better"));

@@ -26,7 +26,9 @@ fn features_are_covered_as_far_as_references_are_stored() {
         let features = found["features"].as_array().unwrap();
         let entry = features.iter().find(|entry| entry["feature"] == feature).unwrap();
         let comparators = entry["partners"].as_array().unwrap().iter();
-        let own = |comparator: &&Value| comparator["partner"] != "closed form" && comparator["partner"] != "CalculiX";
+        let own = |comparator: &&Value| {
+            comparator["partner"] != "closed form" && comparator["partner"] != "CalculiX"
+        };
         comparators.filter(own).cloned().collect()
     };
     let scenes = ["scaled-plate-r10", "scaled-plate-r6.35", "scenes/examples/wet-valve-plate.toml"];
@@ -78,7 +80,9 @@ fn references_that_are_elsewhere_are_known_by_what_they_showed() {
         let feature = features.into_iter().find(|f| f["feature"] == "compact outer body").unwrap();
         let comparators = feature["partners"].as_array().unwrap().iter();
         // the contact has its closed form whatever is stored
-        Value::Array(comparators.filter(|comparator| comparator["partner"] != "closed form").cloned().collect())
+        Value::Array(
+            comparators.filter(|comparator| comparator["partner"] != "closed form").cloned().collect(),
+        )
     };
     let known = comparators("scenes/validation/compact-bodies.toml");
     let model_c = known.as_array().unwrap().iter().find(|entry| entry["model"] == "C").unwrap();

@@ -58,7 +58,9 @@ fn nothing_runs_unless_the_user_allows_it() {
     let scene = scene(folder.path(), &[("mine", "echo ran >> it-ran; echo \"{}\"")], "");
     for refused in [gate(&scene, &[], None), gate(&scene, &[], Some("0"))] {
         assert_eq!(refused.status, Some(2), "{}", refused.messages);
-        assert!(refused.messages.contains("`sh -c echo ran") && refused.messages.contains("--allow-external"));
+        assert!(
+            refused.messages.contains("`sh -c echo ran") && refused.messages.contains("--allow-external")
+        );
     }
     assert_eq!(gate(&scene, &["--models", "C"], None).status, Some(0));
     assert!(!folder.path().join("it-ran").exists());

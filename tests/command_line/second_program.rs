@@ -42,9 +42,13 @@ fn changed(store: &Path, change: impl Fn(&mut Value)) {
     let hash: String = Sha256::digest(&text).iter().map(|byte| format!("{byte:02x}")).collect();
     fs::write(to.join("summary.json"), text).unwrap();
     let sums = fs::read_to_string(to.join("checksums.sha256")).unwrap();
-    let other_sums = sums.lines().filter(|line| !line.ends_with("summary.json")).map(|line| format!("{line}\n"));
-    fs::write(to.join("checksums.sha256"), other_sums.collect::<String>() + &format!("{hash}  summary.json\n"))
-        .unwrap();
+    let other_sums =
+        sums.lines().filter(|line| !line.ends_with("summary.json")).map(|line| format!("{line}\n"));
+    fs::write(
+        to.join("checksums.sha256"),
+        other_sums.collect::<String>() + &format!("{hash}  summary.json\n"),
+    )
+    .unwrap();
 }
 
 /// The plate's frequency as if its mesh series had given `factor` times as much.

@@ -52,7 +52,8 @@ const RADIUS: &str =
 #[test]
 fn curves_and_references_have_the_places_of_their_numbers() {
     let folder = tempfile::tempdir().unwrap();
-    let (status, document, messages) = sweep(folder.path(), &format!("model = [\"A\", \"B\"]\n{RADIUS}"), &[]);
+    let (status, document, messages) =
+        sweep(folder.path(), &format!("model = [\"A\", \"B\"]\n{RADIUS}"), &[]);
     assert_eq!(status, Some(0), "{messages}");
     let svg = fs::read_to_string(folder.path().join("sweep-sweep/sweep.svg")).unwrap();
     let curve = |colour| points(attributes(&svg, "path", &[colour], "d").last().unwrap());

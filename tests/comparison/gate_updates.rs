@@ -176,7 +176,8 @@ fn a_loosened_tolerance_has_a_warning_until_there_is_a_reason() {
     let output =
         repository.gate_in(&[("GITHUB_ACTIONS", "true")], &["--json", "--quiet", "--junit", "gate.xml"]);
     assert_eq!(output.status.code(), Some(0), "a warning, no failure");
-    let sentence = "tolerances.C.efficiency was accepted as { absolute = 0.002 } and is now { absolute = 0.02 }";
+    let sentence =
+        "tolerances.C.efficiency was accepted as { absolute = 0.002 } and is now { absolute = 0.02 }";
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains(&format!("warning: {SCENE}: {sentence}")), "{said}");
     assert!(said.contains(&format!("::warning file=scene.toml,line={line},")), "{line}: {said}");

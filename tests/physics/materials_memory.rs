@@ -101,7 +101,8 @@ fn the_history_of_an_impact_that_nothing_remembers_is_the_elastic_one() {
 /// problem, J. Mech. Phys. Solids 8, 1960, 219).
 #[test]
 fn a_viscoelastic_sphere_rebounds_as_hunter_says() {
-    let rigid_plate = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
+    let rigid_plate =
+        ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     let mut setup = common::scaled_plate(0.01, 0.55);
     setup.plate.material.youngs_modulus = 1e17;
     let duration = setup.rigid_system(&rigid_plate, [0.0; 2]).hertz_impact().duration();
@@ -120,7 +121,8 @@ fn a_viscoelastic_sphere_rebounds_as_hunter_says() {
 /// which Jackson, Green & Marghitu's law (Nonlinear Dynamics 60, 2010, 217) differs by 1 to 8 %; the size of the sphere has no part in it.
 #[test]
 fn a_yielding_sphere_rebounds_as_in_finite_elements() {
-    let rigid_plate = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
+    let rigid_plate =
+        ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     let restitution = |radius: f64, ratio: f64| {
         let mut setup = common::scaled_plate(radius, 1.0);
         setup.plate.material.youngs_modulus = 1e17;

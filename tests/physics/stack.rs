@@ -115,7 +115,8 @@ fn a_small_resistance_is_none() {
         let (_, without_drive) = run(stack(gap, None));
         let (_, behind) = run(stack(gap, Some(Supply { resistance: 1e-4, buffer_capacitance: None })));
         assert_relative_eq!(without_drive.velocity[1], behind.velocity[1], max_relative = 1e-3);
-        let [without_drive, behind] = [&without_drive, &behind].map(|result| result.supplied.expect("a stack"));
+        let [without_drive, behind] =
+            [&without_drive, &behind].map(|result| result.supplied.expect("a stack"));
         assert_relative_eq!(without_drive.taken, behind.taken, max_relative = 0.02);
         assert!(without_drive.rest.abs() < 1e-9 * without_drive.taken, "{without_drive:?}");
     }

@@ -69,7 +69,8 @@ fn the_direction_is_smooth_in_the_dimensions() {
 #[test]
 fn a_shape_that_a_mesh_cannot_follow_is_an_error() {
     let series = series();
-    let message = |scene: &Scene| series.model(scene, Model::C, Some(8)).expect_err("another shape").to_string();
+    let message =
+        |scene: &Scene| series.model(scene, Model::C, Some(8)).expect_err("another shape").to_string();
     assert!(message(&changed(|setup| setup.seat.notch = None)).contains("notch or a tip"));
     let far = message(&changed(|setup| setup.seat.membrane_thickness *= 0.02));
     assert!(far.contains("can't follow the shape so far"), "{far}");

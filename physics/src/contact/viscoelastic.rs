@@ -218,7 +218,10 @@ mod tests {
         assert!(-work > 0.3 * stored && -work < 0.9 * stored, "{work} {stored}");
         assert_relative_eq!(pressed.taken(), stored + work, max_relative = 5e-3);
         let contact_approach = contact.contact_approach();
-        assert!(contact_approach > 0.02 * approach(end) && contact_approach < approach(end), "{contact_approach}");
+        assert!(
+            contact_approach > 0.02 * approach(end) && contact_approach < approach(end),
+            "{contact_approach}"
+        );
         assert_eq!(contact.force(contact_approach)[0], 0.0);
         assert!(contact.force(contact_approach * (1.0 + 1e-9))[0] > 0.0);
     }

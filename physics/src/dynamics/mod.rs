@@ -1,6 +1,5 @@
 //! The motion: bodies as oscillators, coupled by contacts and fluid, from the first touch to the last release.
 
-pub mod error_control;
 mod batch;
 mod centre;
 mod clearance;
@@ -9,13 +8,13 @@ mod contact_forces;
 pub mod contact_ledger;
 pub(crate) mod driver;
 pub mod equations;
+pub mod error_control;
 mod force_peak;
 mod free_flight;
 mod heating;
+pub(crate) mod impulse_splitting;
 pub mod integration;
 pub mod integrator;
-pub(crate) mod impulse_splitting;
-mod step_tables;
 mod ledger_check;
 pub mod memory;
 mod moving_body;
@@ -23,6 +22,7 @@ mod point_laws;
 pub(crate) mod recorder;
 mod step_bounds;
 mod step_table;
+mod step_tables;
 pub mod system;
 pub mod wet;
 

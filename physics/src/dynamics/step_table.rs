@@ -1,6 +1,6 @@
 //! What the oscillators of a bank answer in a step of one length.
 
-use super::batch::{OscillatorBatch, Block};
+use super::batch::{Block, OscillatorBatch};
 use super::collocation::Collocation;
 use super::system::dot;
 use crate::numerics::duhamel::MOMENTS;
@@ -91,7 +91,13 @@ impl StepTable {
 
     /// Approaches at the Gauss points, in m, if no force acted during the step; `gap` in m.
     #[inline]
-    pub fn free_approach(&self, batch: &OscillatorBatch, gap: [f64; 2], q: &[f64x4], v: &[f64x4]) -> [f64x4; 2] {
+    pub fn free_approach(
+        &self,
+        batch: &OscillatorBatch,
+        gap: [f64; 2],
+        q: &[f64x4],
+        v: &[f64x4],
+    ) -> [f64x4; 2] {
         let n = q.len();
         let (blocks, v) = (&batch.blocks[..n], &v[..n]);
         let rows: [&[f64x4]; 2 * STAGES] = std::array::from_fn(|row| &self.oscillators[row * n..][..n]);

@@ -22,7 +22,13 @@ impl StepTables {
     }
 
     /// Table of the steps of `level`, of length `h` s.
-    pub(super) fn get(&mut self, batch: &OscillatorBatch, collocation: &Collocation, level: i32, h: f64) -> &StepTable {
+    pub(super) fn get(
+        &mut self,
+        batch: &OscillatorBatch,
+        collocation: &Collocation,
+        level: i32,
+        h: f64,
+    ) -> &StepTable {
         let place = match self.places.iter().position(|(l, _)| *l == level) {
             Some(place) => return &self.places[place].1,
             None if self.places.len() < PLACES => {

@@ -50,7 +50,9 @@ impl Setup {
         let mut first: Option<(f64, usize)> = None;
         for wall in 0..self.chamber.walls() {
             let within = first.map_or(h, |(earlier, _)| earlier);
-            if let Some(time) = self.contact_time(wall, [from, &to], h, HALVINGS).filter(|time| *time < within) {
+            if let Some(time) =
+                self.contact_time(wall, [from, &to], h, HALVINGS).filter(|time| *time < within)
+            {
                 first = Some((time, wall));
             }
         }

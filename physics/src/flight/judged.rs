@@ -106,7 +106,12 @@ fn margin(setup: &Setup, landscape: &Landscape, launch: &Launch) -> Option<f64> 
 }
 
 /// Launches at points that fill the box of the scatter evenly: multiples of the powers of the root of x^4 = x + 1 (Roberts 2018).
-fn landings(setup: &Setup, landscape: &Landscape, launch: &Launch, deviation: &LaunchDeviation) -> Vec<Landing> {
+fn landings(
+    setup: &Setup,
+    landscape: &Landscape,
+    launch: &Launch,
+    deviation: &LaunchDeviation,
+) -> Vec<Landing> {
     const ROOT: f64 = 1.220_744_084_605_759_5;
     let landing = |k: u32| {
         let [speed, angle, restitution] =

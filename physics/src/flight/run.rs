@@ -125,7 +125,8 @@ pub(super) fn moved(
     let mut path = if request.path { vec![start] } else { Vec::new() };
     let side = request.beyond.map(|x| (start.place.x - x).signum());
     for _ in 0..MOST_STEPS {
-        let passed = request.beyond.zip(side).is_some_and(|(x, side)| (running.state.place.x - x) * side < 0.0);
+        let passed =
+            request.beyond.zip(side).is_some_and(|(x, side)| (running.state.place.x - x) * side < 0.0);
         let ending = if passed { Some(Ending::Passed) } else { running.ending() };
         let ending = ending.or_else(|| running.go());
         if request.path {
@@ -219,7 +220,8 @@ impl FlightRun<'_> {
         let mut pressing: Vec<(Track, f64)> = Vec::new();
         for wall in 0..setup.chamber.walls() {
             let feature = setup.chamber.nearest(wall, state.place).feature;
-            if setup.chamber.gap(wall, state.place) > bounce || pressing.iter().any(|(t, _)| t.feature == feature)
+            if setup.chamber.gap(wall, state.place) > bounce
+                || pressing.iter().any(|(t, _)| t.feature == feature)
             {
                 continue;
             }

@@ -41,7 +41,11 @@ impl Impact {
     /// Half width of its 95 % band, absolute, if it is known.
     pub fn band(&self, name: &str) -> Option<f64> {
         let known = |name: &str| self.uncertainty.get(name).copied();
-        if name == KEPT_ENERGY { Some(known("plastic_work")? + known("locked_in_energy")?) } else { known(name) }
+        if name == KEPT_ENERGY {
+            Some(known("plastic_work")? + known("locked_in_energy")?)
+        } else {
+            known(name)
+        }
     }
 
     /// The impacts in the JSON `document` of a summary whose kind of scene has `quantities`.

@@ -4,8 +4,8 @@ mod plate_impact;
 mod seal_seat;
 
 use super::Context;
-use super::requested_model::RequestedModel;
 use super::requested_model::ModelRequest;
+use super::requested_model::RequestedModel;
 use crate::error::{Error, Result};
 use crate::kinds::{self, Kind, SharedBodies};
 use crate::reference::Stored;

@@ -105,7 +105,8 @@ fn having(scene: &Scene, models: &[RequestedModel], omitted: impl Fn(&Error)) ->
         RequestedModel::Named(model) => Reduced::require(scene, *model).err(),
         RequestedModel::Auto | RequestedModel::External => None,
     };
-    let supported: Vec<RequestedModel> = models.iter().copied().filter(|request| refused(request).is_none()).collect();
+    let supported: Vec<RequestedModel> =
+        models.iter().copied().filter(|request| refused(request).is_none()).collect();
     if supported.is_empty() {
         return models.to_vec();
     }

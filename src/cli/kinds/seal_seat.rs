@@ -3,8 +3,8 @@
 use super::{Compared, ReducedModels};
 use crate::body::cache::Cache;
 use crate::cli::Context;
-use crate::cli::requested_model::{RequestedModel, ModelRequest};
 use crate::cli::progress::Bar;
+use crate::cli::requested_model::{ModelRequest, RequestedModel};
 use crate::error::Result;
 use crate::kinds::SharedBodies;
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};

@@ -3,8 +3,8 @@
 use super::between::{ContactWatch, ObservedContact};
 use super::kinds::StressImpact;
 use super::{DIFFERENCE_BOUND, END_BOUND, TOLERANCE};
-use crate::dynamics::error_control;
 use crate::dynamics::equations::Equations;
+use crate::dynamics::error_control;
 use crate::dynamics::integration::Integration;
 use crate::dynamics::system::{INNER, System};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
@@ -104,7 +104,8 @@ pub(super) fn compare(impact: &StressImpact, result: &Integration) -> Independen
     let solve = |tolerance, work| solve(system, impact.forces.as_ref(), end_time, tolerance, work);
     let ours = Answer::from(result);
     // the program warns of contacts that it cannot count
-    let countable = result.contacts.iter().all(|contact| contact.least_turn > error_control::ENOUGH * TOLERANCE);
+    let countable =
+        result.contacts.iter().all(|contact| contact.least_turn > error_control::ENOUGH * TOLERANCE);
     let apart = |one: Answer, two: Answer| {
         let found = one.differences(two, system);
         Differences { contacts: found.contacts.filter(|_| countable), ..found }

@@ -8,7 +8,7 @@ mod write;
 
 pub use kinds::*;
 pub use plot::{Axis, Only, Panel, figure};
-pub use write::{MOST_ROWS, csv, json, markdown, in_words, write};
+pub use write::{MOST_ROWS, csv, in_words, json, markdown, write};
 
 use crate::error::{Error, Result};
 use crate::project::project_root;

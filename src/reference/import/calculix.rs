@@ -168,7 +168,8 @@ pub(super) fn frd(text: &str, requested: &[&str]) -> Result<String, String> {
                 let node = part(line, 3, 10).ok_or_else(fault)?;
                 let named =
                     components.iter().map(|component| format!("{field} {node} {component}")).enumerate();
-                let own: Vec<_> = named.filter(|(_, heading)| requested.contains(&heading.as_str())).collect();
+                let own: Vec<_> =
+                    named.filter(|(_, heading)| requested.contains(&heading.as_str())).collect();
                 let values = match own.is_empty() {
                     true => Vec::new(),
                     false => line.get(13..).and_then(packed).ok_or_else(fault)?,

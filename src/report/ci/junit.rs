@@ -5,8 +5,8 @@ use crate::comparison::{Check, Discrepancy, GateRules, NO_RESULT, SceneCompariso
 use crate::error::{Error, Result};
 use crate::format::{percent, prefixed, with_unit};
 use crate::report::Report;
-use crate::report::export::Export;
 use crate::report::existing::Folder;
+use crate::report::export::Export;
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 
 /// The checks of this run.

@@ -3,11 +3,11 @@
 use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison};
 use crate::error::Result;
 use crate::format::{model_name, percent, prefixed, significant, with_unit, words};
+use crate::report::existing::{self, ExistingScene, Folder};
 use crate::report::export::Export;
 use crate::report::overview::{ModelOverview, Overview};
 use crate::report::page::section;
 use crate::report::page::validated_map::{self, ValidatedMap};
-use crate::report::existing::{self, Folder, ExistingScene};
 use crate::report::{Report, SceneReport, check_failure, kinds};
 use std::cmp::Reverse;
 

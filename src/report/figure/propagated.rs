@@ -5,7 +5,7 @@ use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::chart::{CHART_WIDTH, LEFT};
 use crate::plot::polyline::path;
 use crate::plot::svg::{Svg, Theme, x2};
-use crate::uncertainty::{QuantityUncertainty, PropagatedUncertainty, Share};
+use crate::uncertainty::{PropagatedUncertainty, QuantityUncertainty, Share};
 use maud::{Markup, html};
 
 /// Most bars of a histogram.

@@ -1,9 +1,9 @@
 //! The page of coverage: features of scenes in rows, models and what they are held against in columns.
 
-use crate::coverage::{CLOSED_FORM, Coverage, FeatureCoverage, FeatureComparison};
+use crate::coverage::{CLOSED_FORM, Coverage, FeatureComparison, FeatureCoverage};
 use crate::format::{percent_above, words};
-use crate::report::page::html::{page, scrolled};
 use crate::report::existing::ExistingScene;
+use crate::report::page::html::{page, scrolled};
 use crate::report::trust::size_class;
 use maud::{Markup, html};
 
@@ -165,7 +165,8 @@ mod tests {
             "{of_c}"
         );
         assert!(of_model(&compared, "B").into_string().contains("not compared"));
-        let axisymmetric = of_comparator(&with(&compared, |name| name == "axisymmetric"), &["here"]).into_string();
+        let axisymmetric =
+            of_comparator(&with(&compared, |name| name == "axisymmetric"), &["here"]).into_string();
         assert!(axisymmetric.starts_with("C: ") && axisymmetric.contains("2 scenes"), "{axisymmetric}");
         assert!(
             axisymmetric.contains("<a href=\"here.html\">here</a>")

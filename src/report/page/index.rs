@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::format::{percent, prefixed, significant, words};
 use crate::plot::colours::look;
 use crate::report::Report;
+use crate::report::existing::{self, ExistingScene, Folder};
 use crate::report::export::Export;
 use crate::report::figure::thumbnail;
 use crate::report::overview::{ModelOverview, Overview, RowOverview};
@@ -14,7 +15,6 @@ use crate::report::page::html::{
 };
 use crate::report::page::validated_map::ValidatedMap;
 use crate::report::run_times::marked;
-use crate::report::existing::{self, Folder, ExistingScene};
 use crate::report::trust::size_class;
 use maud::{Markup, PreEscaped, html};
 

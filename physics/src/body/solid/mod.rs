@@ -54,7 +54,12 @@ impl Solid {
     ///
     /// # Errors
     /// [`Error::Solver`] if the supports leave a rigid motion or the material is too nearly incompressible.
-    pub fn new(mesh: &TetMesh, material: &Material, fixed: &[[bool; 3]], interface: &[usize]) -> Result<Self> {
+    pub fn new(
+        mesh: &TetMesh,
+        material: &Material,
+        fixed: &[[bool; 3]],
+        interface: &[usize],
+    ) -> Result<Self> {
         let matrices = SolidMatrices::new(mesh, material);
         let mut size = 0;
         let dof: Vec<[usize; 3]> = fixed

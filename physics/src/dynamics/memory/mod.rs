@@ -18,8 +18,8 @@ pub(crate) use self::modes::ModeFlow;
 use self::contact::Contact;
 use self::step_force::StepForce;
 use self::stepper::MemoryStepper;
-use super::error_control::differences;
 use super::driver;
+use super::error_control::differences;
 use super::integration::{Converged, Integration, Options};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
@@ -143,10 +143,8 @@ impl Memory {
         let hits = [0, 1].map(|i| hit(system, i));
         let contact = |i: usize| contact([bodies[i], plate], system.laws[i], &hits[i]);
         let contacts = [contact(0)?, contact(1)?];
-        let mut warnings: Vec<String> = materials
-            .into_iter()
-            .filter_map(|material| hardening_omitted(material, system, &hits))
-            .collect();
+        let mut warnings: Vec<String> =
+            materials.into_iter().filter_map(|material| hardening_omitted(material, system, &hits)).collect();
         warnings.sort();
         warnings.dedup();
         warnings.extend(overloaded(&contacts, &hits)?);

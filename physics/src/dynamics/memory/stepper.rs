@@ -155,7 +155,8 @@ impl<'a> MemoryStepper<'a> {
         let sampling = self.sample_interval.max(since / self.samples_per_fold);
         let sampling = self.history.as_ref().map_or(f64::INFINITY, |_| sampling);
         let end = self.end_time - self.time;
-        let steps = outer.min(inner).max(open).min(recovering).min(sampling).min(end) / self.h * (1.0 + ROUNDING);
+        let steps =
+            outer.min(inner).max(open).min(recovering).min(sampling).min(end) / self.h * (1.0 + ROUNDING);
         if steps < 2.0 { 0 } else { (steps.log2() as usize).min(MAX_DOUBLINGS) }
     }
 
@@ -175,7 +176,8 @@ impl<'a> MemoryStepper<'a> {
             self.x[i] = self.y[i] + self.offset[i] - elastic_below(0) - elastic_below(1);
         }
         self.remember(self.x, [0.0; 2], self.patch);
-        self.past = [0, 1].map(|i| (self.x[i] - self.bodies.contacts[i].contact_approach()).min(-f64::MIN_POSITIVE));
+        self.past =
+            [0, 1].map(|i| (self.x[i] - self.bodies.contacts[i].contact_approach()).min(-f64::MIN_POSITIVE));
         self.step_length.reset();
         self.level = 0;
         self.bodies.prepare(self.h);

@@ -105,7 +105,10 @@ fn the_improved_design_reaches_the_other_seat() {
     let ends = |restitution: f64, launch: &Launch| {
         let setup = valve(37e-3, restitution, 0.2);
         let flight = fly(&setup, &Landscape::new(&setup).expect("held"), launch, false);
-        (flight.ending.seat(), (flight.first_contact.expect("a touch").place - setup.chamber.seats()[1]).norm())
+        (
+            flight.ending.seat(),
+            (flight.first_contact.expect("a touch").place - setup.chamber.seats()[1]).norm(),
+        )
     };
     let (seat, off) = ends(0.0, &launch);
     assert_eq!(seat, Seat::Other);

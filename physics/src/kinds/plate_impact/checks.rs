@@ -100,7 +100,8 @@ fn efficiency(setup: &PlateImpact, summary: &Summary) -> Option<Statement> {
     let along = summary.sideways.map_or(0.0, |sideways| sideways.inner_tangential_velocity_final);
     let efficiency = mass_ratio * (velocity.powi(2) + along.powi(2)) / outer.speed.powi(2);
     let is_mounted = outer.shape.is_mounted();
-    (!is_mounted).then(|| Statement::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency))
+    (!is_mounted)
+        .then(|| Statement::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency))
 }
 
 /// Momentum against impulse and path against velocity.

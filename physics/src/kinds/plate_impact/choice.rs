@@ -13,11 +13,11 @@
 //! with fewer modes tells how many model C needs; built, model C is held against itself with fewer modes (`truncation`), and
 //! has more of them where that finds too large an error. Of a thick plate the layer says little: model C alone is asked.
 
+use super::assembled::Cut;
 use super::closed_form;
 use super::errors::COVERED;
-use super::assembled::Cut;
 use super::results::PlateQuantities;
-use super::trials::{HALF_SPACES, TruncationError, RUNGS, Trials};
+use super::trials::{HALF_SPACES, RUNGS, Trials, TruncationError};
 use super::truncation::{by_fewer_modes, of_continuum};
 use super::validity;
 use crate::body::bending;
@@ -156,7 +156,8 @@ impl<'a> ChoicePlan<'a> {
         }
         let (modes, error) = self.continuum();
         let (Some(layer), Ok(misshapen)) = (self.layer, self.trials.misshapen()) else { return false };
-        let own = closed_form::BY_TWICE * TruncationError::between(&misshapen, &layer, setup.outer.speed).error;
+        let own =
+            closed_form::BY_TWICE * TruncationError::between(&misshapen, &layer, setup.outer.speed).error;
         self.error = error.map(|error| error.hypot(own));
         if let Some(taken) = self.tried.iter_mut().find(|tried| tried.modes == modes) {
             taken.estimated_error = self.error;
@@ -205,7 +206,8 @@ impl<'a> ChoicePlan<'a> {
     /// What Kirchhoff's plate, of which `kirchhoff` has all modes, may be off by beyond its difference to the `layer`, which is none itself.
     fn kirchhoff_error(&self, kirchhoff: &PlateQuantities, layer: &PlateQuantities) -> f64 {
         let Trials { setup, tips, .. } = self.trials;
-        let truncation = |ours: &PlateQuantities| TruncationError::between(kirchhoff, ours, setup.outer.speed).error;
+        let truncation =
+            |ours: &PlateQuantities| TruncationError::between(kirchhoff, ours, setup.outer.speed).error;
         let rim = match setup.plate.edge {
             Edge::SimplySupported => {
                 let rim = (self.thickness_ratio() / (1.0 + setup.plate.material.poisson_ratio)).powi(2);

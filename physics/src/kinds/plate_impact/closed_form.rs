@@ -10,8 +10,8 @@
 //! estimate. Their shapes are off by what the closed form may be ([`misshapen`]), so that impacts which take small errors far tell it.
 
 use super::PlateImpact;
-use super::errors::{COVERED, largest_error};
 use super::assembled::{Assembled, join};
+use super::errors::{COVERED, largest_error};
 use super::predictor::Predictor;
 use super::results::quantities;
 use super::{choice, validity};
@@ -112,14 +112,21 @@ pub(super) fn choose(
     let floor = validity::measured_error(patch, plate.thickness).filter(|_| !wide && holds(setup, patch));
     let Some(floor) = floor else { return Ok(None) };
     let approach = look.laws[0].approach(predictor.force_peak[0]) / predictor.force_peak[0];
-    let total = |truncation: f64, next: &BendingMode| (truncation + predictor.undamped(plate, next.omega)).hypot(floor);
+    let total = |truncation: f64, next: &BendingMode| {
+        (truncation + predictor.undamped(plate, next.omega)).hypot(floor)
+    };
     let own = own_error(plate) * amplified(predictor.repeated_contacts);
     let enough = |modes: &[BendingMode]| {
         let truncations = truncations(plate, modes, &predictor);
         let estimate = |(n, truncation): (usize, &ModalTruncation)| {
             (n, total(own + truncation.error(approach, predictor.repeated_contacts), &modes[n]))
         };
-        truncations.iter().enumerate().skip(choice::LEAST).map(estimate).find(|(_, error)| *error <= tolerance)
+        truncations
+            .iter()
+            .enumerate()
+            .skip(choice::LEAST)
+            .map(estimate)
+            .find(|(_, error)| *error <= tolerance)
     };
     let mut found = enough(&modes);
     while found.is_none() && modes.len() < MOST {

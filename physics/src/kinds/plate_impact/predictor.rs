@@ -1,8 +1,8 @@
 //! A first look at an impact: contact patches, force peaks and how quick the contacts are.
 
+use crate::dynamics::impulse_splitting::{self, SplittingPeak};
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
-use crate::dynamics::impulse_splitting::{self, SplittingPeak};
 use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::scene::Plate;

@@ -2,10 +2,10 @@
 
 mod run;
 
+use super::assembled::{Assembled, RequestedModes, continuum, kirchhoff, kirchhoff_plate};
 use super::choice::ChoicePlan;
 use super::closed_form;
 use super::continua::Continua;
-use super::assembled::{Assembled, RequestedModes, continuum, kirchhoff, kirchhoff_plate};
 use super::results::PlateQuantities;
 use super::shared::SharedBodies;
 use super::{MAX_MODES, PlateImpact};
@@ -119,7 +119,12 @@ impl Reduced {
         let mut plan = ChoicePlan::new(&normal, tolerance)?;
         let mut continua: Option<Assembled> = plan.closed_form.then(|| plan.trials.closed_form(plan.modes));
         while let Some(cut) = plan.cut {
-            match continuum(setup, RequestedModes::Below(cut), &plan.trials.predictor, Continua::meshed(cache)) {
+            match continuum(
+                setup,
+                RequestedModes::Below(cut),
+                &plan.trials.predictor,
+                Continua::meshed(cache),
+            ) {
                 Ok(built) => {
                     plan.judge(&built.system, built.omega_next);
                     continua = Some(built);

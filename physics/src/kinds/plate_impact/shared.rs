@@ -1,8 +1,8 @@
 //! What the impacts of a series share, so that only the first of them pays for its bodies.
 
 use super::PlateImpact;
-use super::continua::Continua;
 use super::assembled::{join, kirchhoff_system};
+use super::continua::Continua;
 use super::predictor::Predictor;
 use super::reduced::Reduced;
 use crate::body::cache::Cache;

@@ -5,9 +5,9 @@
 //! costs as much as a run of models A and B.
 
 use super::PlateImpact;
+use super::assembled::{Assembled, Cut, fluid_forces};
 use super::closed_form;
 use super::errors::largest_error;
-use super::assembled::{Cut, Assembled, fluid_forces};
 use super::predictor::Predictor;
 use super::results::{PlateQuantities, quantities};
 use super::validity;

@@ -6,7 +6,7 @@
 
 use super::assembled::off_centre_system;
 use super::results::quantities;
-use super::trials::{HALF_SPACES, TruncationError, RUNGS, Trials};
+use super::trials::{HALF_SPACES, RUNGS, Trials, TruncationError};
 use super::{MAX_MODES, PlateImpact};
 use crate::body::off_centre;
 use crate::dynamics::integration::Options;

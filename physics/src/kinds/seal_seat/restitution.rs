@@ -43,7 +43,8 @@ impl SeatModel {
             ..system.start()
         };
         let result = integrate_from(system, start, &Options { step, end_time: None, history: false })?;
-        let of_sphere = system.candidates.iter().filter(|candidate| candidate.contact_body == ContactBody::Sphere);
+        let of_sphere =
+            system.candidates.iter().filter(|candidate| candidate.contact_body == ContactBody::Sphere);
         let zone = of_sphere.map(|candidate| candidate.offset).fold(0.0, f64::max);
         if result.tally.reach[0] >= zone {
             return Err(Error::Solver(format!(

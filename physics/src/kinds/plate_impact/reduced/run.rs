@@ -2,8 +2,8 @@
 
 use super::{Point, Reduced};
 use crate::dynamics::StopReason;
-use crate::dynamics::error_control;
 use crate::dynamics::contact_ledger::ContactLedger;
+use crate::dynamics::error_control;
 use crate::dynamics::integration::{Converged, Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
 use crate::dynamics::ledger_check;
 use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
@@ -110,7 +110,11 @@ impl Reduced {
     fn solved(&self, tolerance: f64, options: Options) -> Result<Point> {
         let options = Options { peak_error: PEAK_ERROR * options.tolerance, ..options };
         let result = self.impacts().all(&options)?.last;
-        ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.least_tolerance))?;
+        ledger_check(
+            result.energy_residual,
+            result.momentum_residual,
+            tolerance.max(result.least_tolerance),
+        )?;
         let enough =
             options.results.unwrap_or(error_control::ENOUGH * options.tolerance).max(result.least_tolerance);
         Ok(Point {
