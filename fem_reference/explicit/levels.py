@@ -30,7 +30,7 @@ def graded_levels(
     Args:
         steps: (m,) critical time steps of the elements over that of level 0.
         nodes: (m, k) of the elements.
-        touching: (n,) nodes whose elements have level 0.
+        contact_nodes: (n,) nodes whose elements have level 0.
         most: levels.
     """
     octaves = np.floor(np.log2(np.maximum(LEVEL_MARGIN * steps, 1.0)))

@@ -27,7 +27,7 @@ def owners(
         points: (n, 3) m.
         elements: (m, k) nodes.
         steps: (m,) critical time step of each element, s.
-        touching: nodes that can touch.
+        contact_nodes: nodes that can be in contact.
         processes: how many.
     """
     near = np.zeros(points.shape[0], dtype=bool)

@@ -50,7 +50,7 @@ class Stiffness(Protocol):
         Args:
             element: (m,) level of each element of the system.
             node: (n,) level of each node, that of its fastest element.
-            held: (n,) nodes that are held somewhere.
+            supported: (n,) nodes with a support in some direction.
             threads: that sum one part of every level each.
             arrays: keeps what the parts point to.
         """

@@ -128,7 +128,7 @@ def strike(
     Args:
         series: None: a single one.
         impact: makes one.
-        kept: those an earlier start has finished, and where finished ones go.
+        stored: those an earlier start has finished, and where finished ones go.
         accepted: whether the mesh is good enough for an impact.
         count: of the impacts; None: until nothing yields any more.
     """

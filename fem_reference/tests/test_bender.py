@@ -139,7 +139,7 @@ def test_a_bender_without_its_required_keys_is_refused() -> None:
 
 
 @pytest.mark.parametrize("most_levels", [1, 4])
-def test_ledger_of_an_impact(most_levels: int) -> None:
+def test_balance_of_an_impact(most_levels: int) -> None:
     """Beam, plate and sphere: energy of all, momentum of all with both supports."""
     scene = impact()
     system, duration = make_system(scene)

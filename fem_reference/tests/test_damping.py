@@ -60,7 +60,7 @@ def test_free_mode_decays_as_its_closed_form(mode: int, levels: int) -> None:
 
 
 @pytest.mark.parametrize("edge", ["clamped", "free"])
-def test_ledgers_close(edge: str) -> None:
+def test_balances_close(edge: str) -> None:
     scene = parse_scene(document(plate__edge=edge, plate__damping_ratio=RATIO))
     system, duration = make_system(scene)
     many = integrate(system, scene, duration)

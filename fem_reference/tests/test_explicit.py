@@ -33,7 +33,7 @@ from fem_reference.plate_impact.scene import Scene, parse_scene
 from .conftest import document, integrate, make_loop, make_system
 
 
-def test_ledger_of_momentum_and_energy(run: Run, system: AxisymmetricSystem) -> None:
+def test_balance_of_momentum_and_energy(run: Run, system: AxisymmetricSystem) -> None:
     """Momentum to round-off, energy to what the interfaces of the levels exchange."""
     loop = make_loop(system, run.time_step, MOST_LEVELS)
     assert len(loop.levels) > 2

@@ -204,7 +204,7 @@ def runs() -> dict[str, tuple[Scene, Run]]:
 
 
 @pytest.mark.parametrize("name", ["sphere", "compact", "all"])
-def test_ledgers_close(runs: dict[str, tuple[Scene, Run]], name: str) -> None:
+def test_balances_close(runs: dict[str, tuple[Scene, Run]], name: str) -> None:
     _, run = runs[name]
     assert run.energy_residual < 1e-9
     assert run.momentum_residual < 1e-8

@@ -116,7 +116,7 @@ def test_terms_that_never_or_at_once_relax_leave_an_elastic_material() -> None:
 
 
 @pytest.mark.parametrize("edge", ["clamped", "free"])
-def test_ledgers_close(edge: str) -> None:
+def test_balances_close(edge: str) -> None:
     scene = relaxing("outer", "plate", plate__edge=edge)
     many = run_of(scene)
     one = run_of(scene, end_time=float(many.times[-1]), most_levels=1)

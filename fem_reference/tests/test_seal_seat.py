@@ -209,7 +209,7 @@ def test_the_initial_design_misses_and_the_improved_one_hits(launches: dict[bool
     assert angles[False] < -4.0 and abs(angles[True] - 15.0) < 5.0
 
 
-def test_ledgers_close(launches: dict[bool, SeatRun]) -> None:
+def test_balances_close(launches: dict[bool, SeatRun]) -> None:
     for run in launches.values():
         assert run.energy_residual < 1e-11
         assert run.momentum_residual < 1e-11

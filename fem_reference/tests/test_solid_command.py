@@ -87,7 +87,7 @@ PHYSICAL = (
 )
 
 
-def test_ledgers_close_and_the_folder_is_complete(whole: Path) -> None:
+def test_balances_close_and_the_folder_is_complete(whole: Path) -> None:
     found = summary(whole)
     assert found["energy_residual"] < 1e-11
     assert found["momentum_residual"] < 1e-11

@@ -63,7 +63,7 @@ fn first_ten_frequencies_are_those_of_slepc_on_the_same_mesh() {
 }
 
 #[test]
-fn ledgers_of_energy_and_momentum_balance() {
+fn energy_and_momentum_balance() {
     let result = sixteen().integrate(0.25e-6, false).expect("run");
     assert!(result.energy_residual < 1e-4, "{}", result.energy_residual);
     assert!(result.momentum_residual < 1e-12, "{}", result.momentum_residual);

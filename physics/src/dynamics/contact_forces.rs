@@ -7,7 +7,7 @@
 
 use super::batch::OscillatorBatch;
 use super::collocation::{Collocation, POINTS, Points};
-use super::contact_ledger::work;
+use super::contact_balance::work;
 use super::point_laws::{HertzPoints, PointLaw, ResidualPoints, Visit};
 use super::step_table::StepTable;
 use super::system::{System, dot};

@@ -6,7 +6,7 @@
 //! single steps can't know that. Two solutions with tolerances apart can: their difference is the error of the less exact of
 //! the two.
 
-use super::contact_ledger::ContactLedger;
+use super::contact_balance::ContactBalance;
 use super::integration::{Converged, Integration, Options};
 use super::step_bounds::{StepBounds, least_force, least_impulse};
 use super::system::System;
@@ -43,7 +43,7 @@ pub const ENOUGH: f64 = 10.0;
 /// Largest relative difference of the times of release where two solutions have the same contacts. They have to have the same ones
 /// only where strong damping lets forces die away slowly, or bodies part slowly: where a graze comes and goes, no tolerance settles it.
 const RELEASED: f64 = 3e-4;
-/// Sensitivity of a time of release from which on bodies part slowly, see [`ContactLedger::end_sensitivity`]; of a half-sine it is 1/pi.
+/// Sensitivity of a time of release from which on bodies part slowly, see [`ContactBalance::end_sensitivity`]; of a half-sine it is 1/pi.
 const SLOW_SEPARATION: f64 = 5.0;
 /// The same up to which they part so quickly that a vibration on the contact decides when: steps of the first solution do not follow it.
 const QUICK_SEPARATION: f64 = 0.05;
@@ -172,7 +172,7 @@ fn separates_slowly(result: &Integration) -> bool {
 /// Whether a vibration on the contact decides when the bodies part.
 fn separates_quickly(result: &Integration) -> bool {
     let quickly =
-        |contact: &ContactLedger| contact.contacts > 0 && contact.end_sensitivity < QUICK_SEPARATION;
+        |contact: &ContactBalance| contact.contacts > 0 && contact.end_sensitivity < QUICK_SEPARATION;
     result.contacts.iter().any(quickly)
 }
 
@@ -180,7 +180,7 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
     let [outer, inner] = &result.contacts;
     let bound = StepBounds::new(tolerance).force_defect;
     let sum = if system.is_damped() { SMALL_DEFECTS } else { SMALL_UNDAMPED_DEFECTS };
-    let small = |c: &ContactLedger| {
+    let small = |c: &ContactBalance| {
         let within = |defect: f64, share: f64| defect <= share * bound * c.force_peak;
         within(c.force_defect, SMALL_DEFECT) && within(c.force_defect_sum, sum)
     };

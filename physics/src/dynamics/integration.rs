@@ -1,7 +1,7 @@
 //! What an integration is asked for and what it comes to: its results, and what the balances of energy and momentum leave
 //! unexplained.
 
-use super::contact_ledger::ContactLedger;
+use super::contact_balance::ContactBalance;
 use super::driver::StopReason;
 use super::free_flight;
 use super::system::{PLATE, System};
@@ -70,7 +70,7 @@ pub struct Integration {
     /// Velocities of outer and inner body at the end in m/s, signed along z.
     pub velocity: [f64; 2],
     /// Accounts of both contacts.
-    pub contacts: [ContactLedger; 2],
+    pub contacts: [ContactBalance; 2],
     /// Energy that no strain energy, motion or damping accounts for, over the initial energy.
     pub energy_residual: f64,
     /// The same with its sign: positive where energy came out of nothing.
@@ -140,7 +140,7 @@ pub(super) struct Closing<'a> {
     pub(super) v: &'a [f64],
     /// Energy that the contacts store, J.
     pub(super) stored: f64,
-    pub(super) contacts: [ContactLedger; 2],
+    pub(super) contacts: [ContactBalance; 2],
     pub(super) fluid: FluidAccount,
     pub(super) steps: u64,
     /// Heat in the drive of a stack in J, if it was summed up.
@@ -221,7 +221,7 @@ impl Closing<'_> {
 pub(super) fn unexplained_momentum(
     system: &System,
     v: &[f64],
-    [outer, inner]: &[ContactLedger; 2],
+    [outer, inner]: &[ContactBalance; 2],
     fluid: &FluidAccount,
 ) -> f64 {
     let velocity = system.of_bodies(v);

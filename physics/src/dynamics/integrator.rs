@@ -5,8 +5,8 @@ mod judged;
 use self::judged::StepVerdict;
 use super::batch::in_blocks;
 use super::collocation::{Collocation, POINTS};
+use super::contact_balance::{ContactBalance, StepCourse};
 use super::contact_forces::{Course, ForceError, StepSolver};
-use super::contact_ledger::{ContactLedger, StepCourse};
 use super::driver::{self, Stepper};
 use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
@@ -60,7 +60,7 @@ struct DryStepper<'a> {
     /// The latest step.
     course: Course,
     energy: EnergyAccount,
-    contacts: [ContactLedger; 2],
+    contacts: [ContactBalance; 2],
     steps: u64,
     /// See [`Options`].
     peak_error: f64,
@@ -101,7 +101,7 @@ impl<'a> DryStepper<'a> {
             solver: StepSolver::new(system, collocation),
             q,
             v,
-            contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
+            contacts: [ContactBalance::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
             steps: 0,
             peak_error: options.peak_error,
             heat: options.heat.then_some(0.0),
@@ -130,7 +130,7 @@ impl<'a> DryStepper<'a> {
             let n = system.size();
             recorder.step(self.time, flight, &q[..n], &v[..n], &[[0.0; STAGES]; 2])?;
         }
-        self.book_heat(flight, &[0.0; STAGES]);
+        self.add_heat(flight, &[0.0; STAGES]);
         free_flight::advance(
             self.solver.system,
             flight,
@@ -143,7 +143,7 @@ impl<'a> DryStepper<'a> {
         let rates = batch.approach_rate(v);
         for ((contact, approach), rate) in self.contacts.iter_mut().zip(approach).zip(rates) {
             // a parabola that comes back to zero at this rate was a quarter of it times its duration deep
-            contact.book_flight((0.25 * rate * flight).max(-approach));
+            contact.add_flight((0.25 * rate * flight).max(-approach));
         }
         // exact flight keeps the energy of undamped bodies; of others it is not asked for
         self.course = at_rest(approach, self.course.motion);
@@ -207,7 +207,7 @@ impl<'a> DryStepper<'a> {
                 continue;
             }
             for (contact, defect) in self.contacts.iter_mut().zip(force_defect) {
-                contact.book_defect(defect);
+                contact.add_defect(defect);
             }
             self.energy.book(energy_error);
             self.accept(trial)?;
@@ -274,8 +274,8 @@ impl<'a> DryStepper<'a> {
             };
             contact.book(self.solver.collocation, &course);
         }
-        self.book_peaks(&trial);
-        self.book_heat(trial.h, &trial.stages()[0]);
+        self.add_peaks(&trial);
+        self.add_heat(trial.h, &trial.stages()[0]);
         std::mem::swap(&mut self.q, &mut self.next_q);
         std::mem::swap(&mut self.v, &mut self.next_v);
         self.time += trial.h;
@@ -285,7 +285,7 @@ impl<'a> DryStepper<'a> {
     }
 
     /// Books the heat of the next `h` s under the outer contact's `force` in N, if that is asked for.
-    fn book_heat(&mut self, h: f64, force: &Stages) {
+    fn add_heat(&mut self, h: f64, force: &Stages) {
         if let Some(heat) = &mut self.heat {
             let StepSolver { system, collocation, .. } = &self.solver;
             *heat += heating::heat(system, collocation, h, [flat(&self.q), flat(&self.v)], force);
@@ -293,7 +293,7 @@ impl<'a> DryStepper<'a> {
     }
 
     /// Books the largest forces of the step from the present state to the next.
-    fn book_peaks(&mut self, trial: &Course) {
+    fn add_peaks(&mut self, trial: &Course) {
         let StepSolver { system, collocation, batch, .. } = &self.solver;
         let h = trial.h;
         let motion = |place: f64| {

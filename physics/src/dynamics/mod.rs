@@ -1,11 +1,12 @@
 //! The motion: bodies as oscillators, coupled by contacts and fluid, from the first touch to the last release.
 
+mod balance_check;
 mod batch;
 mod centre;
 mod clearance;
 pub mod collocation;
+pub mod contact_balance;
 mod contact_forces;
-pub mod contact_ledger;
 pub(crate) mod driver;
 pub mod equations;
 pub mod error_control;
@@ -15,7 +16,6 @@ mod heating;
 pub(crate) mod impulse_splitting;
 pub mod integration;
 pub mod integrator;
-mod ledger_check;
 pub mod memory;
 mod moving_body;
 mod point_laws;
@@ -26,9 +26,9 @@ mod step_tables;
 pub mod system;
 pub mod wet;
 
-pub use contact_ledger::ContactLedger;
+pub use balance_check::balance_check;
+pub use contact_balance::ContactBalance;
 pub use driver::StopReason;
-pub use ledger_check::ledger_check;
 pub use moving_body::MovingBody;
 
 use crate::error::Result;

@@ -8,7 +8,7 @@ use super::modes::ModeSet;
 use super::step_force::{StepForce, mean};
 use super::step_length::StepLength;
 use super::{CHANGE, CreepingContacts, Ran};
-use crate::dynamics::contact_ledger::ContactLedger;
+use crate::dynamics::contact_balance::ContactBalance;
 use crate::dynamics::driver::{Stepper, StopReason};
 use crate::dynamics::integration::{FluidAccount, Integration, NEGLIGIBLE, Options, unexplained_momentum};
 use crate::dynamics::recorder::{CURVES, sample};
@@ -58,7 +58,7 @@ pub(super) struct MemoryStepper<'a> {
     y: [f64; 2],
     force: [f64; 2],
     patch: [f64; 2],
-    contacts: [ContactLedger; 2],
+    contacts: [ContactBalance; 2],
     /// What plate and tips have yielded at each contact for having crept, m. Shape (contact; plate, tip).
     viscoelastic: [[f64; 2]; 2],
     /// Energy lost in each contact, J.
@@ -119,7 +119,7 @@ impl<'a> MemoryStepper<'a> {
             y,
             force: [0.0; 2],
             patch: [0.0; 2],
-            contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
+            contacts: [ContactBalance::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
             viscoelastic: Default::default(),
             contact_losses: [0.0; 2],
             taken_before: taken,
@@ -268,7 +268,7 @@ impl<'a> MemoryStepper<'a> {
                 if force[i] > 0.0 { past.max(f64::MIN_POSITIVE) } else { past.min(-f64::MIN_POSITIVE) };
             let forces = [mean[i], force[i]];
             let work = mean[i] * (y[i] - self.y[i]);
-            self.contacts[i].book_even((self.time, h), forces, [self.past[i], past], work);
+            self.contacts[i].add_even((self.time, h), forces, [self.past[i], past], work);
             self.past[i] = past;
             self.contact_losses[i] += match self.step_force {
                 StepForce::Conserving | StepForce::Mean => taken[i] - self.taken[i],

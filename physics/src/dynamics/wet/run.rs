@@ -10,7 +10,7 @@ use super::guess::StepForces;
 use super::solve::{END, Trial, Wet};
 use super::table::WetTable;
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS};
-use crate::dynamics::contact_ledger::{ContactLedger, StepCourse};
+use crate::dynamics::contact_balance::{ContactBalance, StepCourse};
 use crate::dynamics::driver::{self, Stepper};
 use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
@@ -68,7 +68,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         v,
         trial,
         before: StepForces::default(),
-        contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
+        contacts: [ContactBalance::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
         booked: FluidAccount::default(),
         energy: EnergyAccount::new(&hit, system.kinetic_energy(), options.tolerance),
         steps: 0,
@@ -110,7 +110,7 @@ struct WetStepper<'a> {
     /// The latest step; its vectors are used again.
     trial: Trial,
     before: StepForces,
-    contacts: [ContactLedger; 2],
+    contacts: [ContactBalance; 2],
     booked: FluidAccount,
     energy: EnergyAccount,
     steps: u64,
@@ -221,7 +221,7 @@ impl WetStepper<'_> {
             }
             self.accept(h, &account)?;
             for (contact, defect) in self.contacts.iter_mut().zip(force_defect) {
-                contact.book_defect(defect);
+                contact.add_defect(defect);
             }
             self.length.lengthen(excess);
             return Ok(false);
@@ -267,7 +267,7 @@ impl WetStepper<'_> {
     }
 
     /// Books the largest contact forces of the step of `h` s just solved.
-    fn book_peaks(&mut self, h: f64) {
+    fn add_peaks(&mut self, h: f64) {
         let (system, trial) = (self.wet.system, &self.trial);
         let forces = self.wet.generalised(trial);
         let approach = [0, 1].map(|i| with_start(self.approach[i], &trial.approach[i]));
@@ -327,7 +327,7 @@ impl WetStepper<'_> {
             };
             self.contacts[i].book(self.collocation, &course);
         }
-        self.book_peaks(h);
+        self.add_peaks(h);
         self.booked.add(&account.fluid);
         self.energy.book(account.energy_error);
         let trial = &mut self.trial;

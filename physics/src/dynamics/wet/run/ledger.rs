@@ -1,7 +1,7 @@
 //! What is booked of a wet step: impulses, work and losses.
 
 use super::{WetStepper, with_start};
-use crate::dynamics::contact_ledger::work;
+use crate::dynamics::contact_balance::work;
 use crate::dynamics::integration::FluidAccount;
 use crate::dynamics::system::INNER;
 use crate::dynamics::wet::FluidLoad;

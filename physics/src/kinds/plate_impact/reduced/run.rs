@@ -2,10 +2,10 @@
 
 use super::{Point, Reduced};
 use crate::dynamics::StopReason;
-use crate::dynamics::contact_ledger::ContactLedger;
+use crate::dynamics::balance_check;
+use crate::dynamics::contact_balance::ContactBalance;
 use crate::dynamics::error_control;
 use crate::dynamics::integration::{Converged, Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
-use crate::dynamics::ledger_check;
 use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
@@ -47,7 +47,7 @@ impl Reduced {
     /// time integration.
     ///
     /// # Errors
-    /// As [`crate::dynamics::integrate`] and [`ledger_check`].
+    /// As [`crate::dynamics::integrate`] and [`balance_check`].
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let (mut summary, ..) = self.unjudged(tolerance)?;
         Kind.judge(&self.scene, &mut summary, None);
@@ -110,7 +110,7 @@ impl Reduced {
     fn solved(&self, tolerance: f64, options: Options) -> Result<Point> {
         let options = Options { peak_error: PEAK_ERROR * options.tolerance, ..options };
         let result = self.impacts().all(&options)?.last;
-        ledger_check(
+        balance_check(
             result.energy_residual,
             result.momentum_residual,
             tolerance.max(result.least_tolerance),
@@ -234,7 +234,7 @@ impl Reduced {
         }
         warnings.extend(unresolved(system, result, tolerance));
         warnings.extend(uncountable(result, tolerance));
-        warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
+        warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if self.scene.plate_impact()?.outer.angle != 0.0 {
             warnings.push(
                 "motion along the plate is omitted by the reduced models; the reference includes it".into(),
@@ -293,7 +293,7 @@ impl Reduced {
 /// Contacts that nearly join, part or touch once more, so that their number may be another.
 fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
     let error = result.error_estimate.unwrap_or(0.0).max(tolerance);
-    let near = |contact: &ContactLedger| contact.least_turn <= error_control::ENOUGH * error;
+    let near = |contact: &ContactBalance| contact.least_turn <= error_control::ENOUGH * error;
     let bodies = ["outer", "inner"].into_iter().zip(&result.contacts);
     bodies
         .filter(|(_, contact)| contact.contacts > 0 && near(contact))
@@ -328,7 +328,7 @@ mod tests {
 
     /// A result whose ledger is off says so, and is none if it is far off.
     #[test]
-    fn the_ledger_of_a_run_is_judged() {
+    fn the_balance_of_a_run_is_judged() {
         let text = include_str!("../../../../../tests/fixtures/plate-impact.toml");
         let scene = Scene::parse("plate-impact.toml", text).unwrap();
         let reduced = Reduced::new(&scene, Model::B, None).unwrap();
