@@ -123,7 +123,7 @@ def _launch(processes: int) -> None:
 
 
 def threads_per_process(requested: int, comm: Any) -> int:
-    """Threads of this process: its share of those ``requested`` for on its machine, 0: of its cores."""
+    """Threads of this process: its share of those requested on its machine, 0: of its cores."""
     processes, there = 1, len(affinity())
     if comm.size > 1:
         from .fenicsx import on_this_machine

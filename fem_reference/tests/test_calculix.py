@@ -83,7 +83,7 @@ def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
 
 @needs_calculix
 @pytest.mark.parametrize(("edge", "eigenvalue"), [("clamped", 10.2158), ("free", 9.0031)])
-def test_a_thin_plate_vibrates_as_kirchhoff_says(
+def test_a_thin_plate_vibrates_as_in_kirchhoffs_theory(
     tmp_path: Path, edge: Edge, eigenvalue: float
 ) -> None:
     """Lowest axisymmetric mode, omega R^2 sqrt(rho h / D) of a Kirchhoff plate with nu = 0.3."""
@@ -186,7 +186,7 @@ def pretended(folder: Path, monkeypatch: pytest.MonkeyPatch, does: str) -> None:
         ("exit 1", "status 1: it did not say why"),
     ],
 )
-def test_a_run_that_fails_says_why(
+def test_a_run_that_fails_states_the_reason(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, does: str, message: str
 ) -> None:
     pretended(tmp_path, monkeypatch, does)

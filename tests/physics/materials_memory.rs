@@ -100,7 +100,7 @@ fn the_history_of_an_impact_that_nothing_remembers_is_the_elastic_one() {
 /// A Maxwell sphere on a rigid wall loses (4/9) T/tau of its speed in a contact that is short against tau (Hunter, The Hertz contact
 /// problem, J. Mech. Phys. Solids 8, 1960, 219).
 #[test]
-fn a_viscoelastic_sphere_rebounds_as_hunter_says() {
+fn a_viscoelastic_sphere_rebounds_as_in_hunters_theory() {
     let rigid_plate =
         ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     let mut setup = common::scaled_plate(0.01, 0.55);

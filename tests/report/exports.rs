@@ -204,7 +204,7 @@ fn names_with_markup_are_escaped() {
 }
 
 #[test]
-fn terminal_has_a_line_per_model_and_says_what_failed() {
+fn terminal_has_a_line_per_model_and_lists_what_failed() {
     let data = Data::new();
     let text = terminal(&data.report(), Width::Narrow);
     assert_eq!(text.lines().filter(|l| l.trim_start().starts_with("reference ")).count(), 1);

@@ -114,7 +114,7 @@ fn every_mark_stands_where_its_scene_lies() {
 }
 
 #[test]
-fn the_sentence_says_what_is_near_by_and_what_is_not() {
+fn the_sentence_states_which_scenes_are_similar() {
     let known = known();
     let sentence = |known: Vec<Validation>, model: &str| {
         let ([page, ..], place) = pages(known);

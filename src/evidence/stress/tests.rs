@@ -227,7 +227,7 @@ fn agreement_by_chance_does_not_count() {
 
 /// 148 contacts, which amplify errors a hundred thousand times: the result says so.
 #[test]
-fn a_result_that_says_it_is_uncertain_is_undecided() {
+fn a_result_with_a_warning_of_its_uncertainty_is_undecided() {
     let report = run(1, 14_000_099_639, &|| ()).unwrap();
     assert_eq!((report.failures, report.undecided), (vec![], vec![14_000_099_639]));
 }
@@ -261,7 +261,7 @@ fn an_uncertain_release_is_solved_again() {
 /// A light plate bounces between the bodies while they part: points of a sweep once had five contacts for seven, and releases that were
 /// 1e-3 and 7e-3 off. A light inner body vibrates on its contact, and the first solution was 1.5e-3 off.
 #[test]
-fn points_of_a_sweep_are_right_or_say_that_they_are_not() {
+fn points_of_a_sweep_are_right_or_have_a_warning() {
     for seed in [30_000_000_172, 31_000_000_143, 32_000_003_614, 43_000_000_074] {
         assert_eq!(run(1, seed, &|| ()).unwrap().sweep.wrong.len(), 0, "{seed}");
     }

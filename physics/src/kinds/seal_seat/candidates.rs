@@ -34,7 +34,7 @@ pub struct Candidate {
     pub place: Vector3<f64>,
     /// What it may meet.
     pub contact_body: ContactBody,
-    /// Distance in m from where the partner touches first: from the ring along the cone, from the tip's axis.
+    /// Distance in m from where the other body touches first: from the ring along the cone, from the tip's axis.
     pub offset: f64,
     /// Whether it lies on the flank at the +x side of the seat's axis.
     pub right_flank: bool,
