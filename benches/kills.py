@@ -89,11 +89,11 @@ class Outcome:
             yield f"quiet after {self.quiet:.2f} s"
         if self.status != STATUS[case.sent]:
             yield f"ended by signal {self.status}"
-        kept = [name for name in self.left if not name.startswith(".checkpoint-")]
+        left_over = [name for name in self.left if not name.startswith(".checkpoint-")]
         if case.sent == "SIGKILL":
-            kept = [name for name in kept if not name.startswith(".partial-")]
-        if kept:
-            yield f"left {', '.join(kept)}"
+            left_over = [name for name in left_over if not name.startswith(".partial-")]
+        if left_over:
+            yield f"left {', '.join(left_over)}"
         if self.locked:
             yield "the lock is held"
         if self.again != 0 or self.after != ["coarse"]:

@@ -110,12 +110,12 @@ pub struct FeatureCoverage {
     /// The feature.
     pub feature: &'static str,
     /// One entry per model that takes a scene with it and partner; empty if no scene has it or no model takes it.
-    pub partners: Vec<Partner>,
+    pub partners: Vec<FeatureComparison>,
 }
 
 /// A model and what it is held against.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Partner {
+pub struct FeatureComparison {
     /// The reduced model.
     pub model: String,
     /// "axisymmetric" or "solid" finite elements, [`CLOSED_FORM`], or the name of another program; `None`: the model takes the
@@ -140,24 +140,24 @@ fn is_shown_by(feature: &Feature, case: &Case) -> bool {
 /// What `cases` show.
 pub fn coverage(cases: &[Case]) -> Coverage {
     let features = features().map(|feature| {
-        let mut partners: BTreeMap<(Model, Option<&str>), Partner> = BTreeMap::new();
+        let mut partners: BTreeMap<(Model, Option<&str>), FeatureComparison> = BTreeMap::new();
         for case in cases.iter().filter(|case| is_shown_by(feature, case)) {
             let partner = case.finding.as_ref().map(|finding| &*finding.partner);
-            let new = || Partner::of(case.model, partner);
+            let new = || FeatureComparison::of(case.model, partner);
             partners.entry((case.model, partner)).or_insert_with(new).add(case);
         }
         // a scene without a partner says nothing new of a model that has one elsewhere
         let whole = |key: &&(Model, Option<&str>)| key.1.is_some_and(|partner| partner != CLOSED_FORM);
-        let held: Vec<Model> = partners.keys().filter(whole).map(|key| key.0).collect();
-        partners.retain(|(model, partner), _| partner.is_some() || !held.contains(model));
+        let compared: Vec<Model> = partners.keys().filter(whole).map(|key| key.0).collect();
+        partners.retain(|(model, partner), _| partner.is_some() || !compared.contains(model));
         FeatureCoverage { feature: feature.name, partners: partners.into_values().collect() }
     });
     Coverage { schema_version: SCHEMA_VERSION, features: features.collect() }
 }
 
-impl Partner {
+impl FeatureComparison {
     fn of(model: Model, partner: Option<&str>) -> Self {
-        Partner {
+        FeatureComparison {
             model: model.to_string(),
             partner: partner.map(str::to_owned),
             scenes: Vec::new(),
@@ -211,7 +211,7 @@ mod tests {
 
     /// Closed forms are about a part, and shown where the feature is of that part.
     #[test]
-    fn closed_forms_stand_beside_the_features_they_are_about() {
+    fn closed_forms_are_listed_with_their_features() {
         let text = PLATE.replace("radius   = \"10 mm\"", "radius = \"9 mm\"");
         let free = scene(&text.replace("edge      = \"clamped\"", "edge = \"free\"\ndamping_ratio = 0.1"));
         let found = recorded(std::slice::from_ref(&free), &[]).expect("closed forms");
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_without_partner_is_told_as_such_and_a_feature_no_scene_has_is_empty() {
+    fn a_model_without_comparator_is_reported_and_a_feature_no_scene_has_is_empty() {
         let plain = scene(PLATE);
         let cases = [Model::B, Model::C].map(|model| Case { scene: &plain, model, finding: None });
         let found = coverage(&cases);

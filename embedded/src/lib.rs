@@ -20,15 +20,15 @@ pub fn files(_: TokenStream) -> TokenStream {
         collect(Path::new(root), folder, &mut found);
     }
     let shipped = |name: &str| found.contains_key(&format!("scenes/{name}.toml"));
-    let wanted: Vec<_> = found.iter().filter(|(path, _)| is_wanted(path, shipped)).collect();
-    let hash = wanted.iter().fold(0, |hash, (path, bytes)| fnv(fnv(hash, path.as_bytes()), bytes));
+    let selected: Vec<_> = found.iter().filter(|(path, _)| is_selected(path, shipped)).collect();
+    let hash = selected.iter().fold(0, |hash, (path, bytes)| fnv(fnv(hash, path.as_bytes()), bytes));
     let entry =
         |path: &str| format!("({path:?}, include_bytes!({:?}).as_slice()),", format!("{root}/{path}"));
-    let entries: String = wanted.iter().map(|(path, _)| entry(path)).collect();
+    let entries: String = selected.iter().map(|(path, _)| entry(path)).collect();
     format!("({:?}, &[{entries}])", format!("{hash:016x}")).parse().expect("Rust")
 }
 
-fn is_wanted(path: &str, shipped: impl Fn(&str) -> bool) -> bool {
+fn is_selected(path: &str, shipped: impl Fn(&str) -> bool) -> bool {
     match path.strip_prefix("fem_reference/") {
         None => !path.ends_with(".md"),
         Some(rest) => match rest.strip_prefix("solutions/") {

@@ -72,7 +72,7 @@ class BodyMatrices:
     elements: ElementMatrices
 
 
-def scatter(nodes: Ints, stiffness: Floats, count: int) -> scipy.sparse.csr_matrix:
+def global_matrix(nodes: Ints, stiffness: Floats, count: int) -> scipy.sparse.csr_matrix:
     """(2 count, 2 count) sum of element matrices (m, 8, 8) over the elements' ``nodes`` (m, 4)."""
     dofs = (2 * nodes[:, :, None] + np.arange(2)).reshape(-1, 8)
     rows = np.repeat(dofs, 8, axis=1).ravel()
@@ -87,14 +87,14 @@ def assemble(body: BodyMesh, material: Material) -> BodyMatrices:
     count = body.points.shape[0]
     shares = np.bincount(elements.nodes.ravel(), elements.mass.ravel(), minlength=count)
     mass = np.asarray(shares, dtype=np.float64)
-    return BodyMatrices(scatter(elements.nodes, elements.stiffness, count), mass, elements)
+    return BodyMatrices(global_matrix(elements.nodes, elements.stiffness, count), mass, elements)
 
 
 def rigid_node(mass: float) -> BodyMatrices:
     """A body of ``mass`` (kg) that is one node: an element without stiffness lets it step."""
     nodes, none = np.zeros((1, 4), dtype=np.int64), np.zeros((1, 8, 8))
     elements = ElementMatrices(nodes, none, np.full((1, 4), 0.25 * mass))
-    return BodyMatrices(scatter(nodes, none, 1), np.array([mass]), elements)
+    return BodyMatrices(global_matrix(nodes, none, 1), np.array([mass]), elements)
 
 
 def with_rigid_part(matrices: BodyMatrices, rigid: Mask, mass: float) -> tuple[BodyMatrices, Ints]:
@@ -108,7 +108,7 @@ def with_rigid_part(matrices: BodyMatrices, rigid: Mask, mass: float) -> tuple[B
     others = matrices.mass[~rigid]
     lumped = np.append(others, mass - others.sum())
     return BodyMatrices(
-        scatter(elements.nodes, elements.stiffness, count + 1), lumped, elements
+        global_matrix(elements.nodes, elements.stiffness, count + 1), lumped, elements
     ), place
 
 
@@ -121,7 +121,7 @@ def beam_body(beam: Beam) -> BodyMatrices:
     mass = np.full((beam.elements, 4), 0.5 * beam.line_mass * beam.element_length)
     mass[-1, 1:] += beam.tip_mass
     elements = ElementMatrices(ends, stiffness, mass)
-    return BodyMatrices(scatter(ends, stiffness, beam.elements + 1), beam.mass, elements)
+    return BodyMatrices(global_matrix(ends, stiffness, beam.elements + 1), beam.mass, elements)
 
 
 def assemble_consistent(

@@ -35,9 +35,9 @@ def _sum(count: int, ratio: float) -> float:
 
 def _fit(length: float, first: float, count: int) -> Segment:
     """``count`` elements over ``length``, the first as long as ``first``."""
-    wanted = length / first
+    target = length / first
     low, high = 1e-3, 1e3
-    ratio = float(brentq(lambda q: _sum(count, q) - wanted, low, high, xtol=1e-13, rtol=1e-13))
+    ratio = float(brentq(lambda q: _sum(count, q) - target, low, high, xtol=1e-13, rtol=1e-13))
     return Segment(length, count, ratio)
 
 

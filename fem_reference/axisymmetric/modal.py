@@ -60,8 +60,8 @@ def modes_up_to(system: AxisymmetricSystem, frequency: float) -> Modes:
     while modes.frequencies[-1] < frequency and modes.frequencies.size == count:
         count *= 2
         modes = elastic_modes(system, count)
-    kept = int(np.searchsorted(modes.frequencies, frequency)) + 1
-    return Modes(modes.frequencies[:kept], modes.shapes[:, :kept])
+    retained = int(np.searchsorted(modes.frequencies, frequency)) + 1
+    return Modes(modes.frequencies[:retained], modes.shapes[:, :retained])
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ import numpy as np
 from ..common.arrays import Floats, Ints, Mask
 from ..common.bodies import Material
 from ..explicit.plastic import Plasticity
-from .elasticity import BodyMatrices, scatter
+from .elasticity import BodyMatrices, global_matrix
 
 _CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)])
 """In dolfinx's order, as `ElementMatrices.nodes`."""
@@ -93,7 +93,7 @@ def with_box(matrices: BodyMatrices, points: Floats, material: Material, box: Bo
     chosen = box.chosen
     stiffness[chosen] = mean_dilatation(*point_gradients(points[nodes[chosen]]), material)
     elements = replace(matrices.elements, stiffness=stiffness)
-    whole = scatter(nodes, stiffness, points.shape[0])
+    whole = global_matrix(nodes, stiffness, points.shape[0])
     return replace(matrices, stiffness=whole, elements=elements)
 
 

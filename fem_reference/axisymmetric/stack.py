@@ -16,7 +16,7 @@ from ..common.arrays import Floats, Ints
 from ..common.bodies import Stack
 from ..common.errors import SceneError
 from ..explicit import structures
-from .elasticity import BodyMatrices, assemble, scatter
+from .elasticity import BodyMatrices, assemble, global_matrix
 from .elements import ElementMatrices
 from .mesh import BodyMesh
 
@@ -29,7 +29,7 @@ LONGEST = 40.0
 
 
 @dataclass(frozen=True)
-class Touch:
+class FirstContact:
     """The stack when its tip touches the plate."""
 
     time: float
@@ -90,13 +90,13 @@ class StackBody:
         nodes = np.minimum(elements.nodes, self.count - 1)
         mass = np.bincount(nodes.ravel(), elements.mass.ravel(), minlength=self.count)
         return BodyMatrices(
-            scatter(nodes, elements.stiffness, self.count),
+            global_matrix(nodes, elements.stiffness, self.count),
             np.asarray(mass, dtype=np.float64),
             ElementMatrices(nodes, elements.stiffness, elements.mass),
         )
 
     @cached_property
-    def touch(self) -> Touch:
+    def first_contact(self) -> FirstContact:
         """Switched on at rest, when the tip has come as far as the plate.
 
         Raises:
@@ -104,12 +104,12 @@ class StackBody:
         """
         stack, still = self.stack, np.zeros((self.count, 2))
         if stack.gap == 0.0:
-            return Touch(0.0, still, still, 0.0, 0.0, 0.0)
+            return FirstContact(0.0, still, still, 0.0, 0.0, 0.0)
         matrices, supply, tip = self.matrices, stack.drive, 2 * self.count - 1
         inverse = np.repeat(1.0 / matrices.mass, 2)
         inverse[self.fixed] = 0.0
         step = SHARE * float(matrices.elements.critical_time_steps().min())
-        alpha, held = stack.force_per_voltage, stack.held_capacitance
+        alpha, capacitance = stack.force_per_voltage, stack.clamped_capacitance
 
         def moved(
             state: tuple[Floats, Floats, float], dt: float
@@ -125,9 +125,9 @@ class StackBody:
             half = v + 0.5 * dt * rate(u, charge)
             after, heat, taken = u + dt * half, 0.0, charge
             if supply is not None:
-                change = 0.5 * dt * (supply.elastance + 1.0 / held) / supply.resistance
+                change = 0.5 * dt * (supply.elastance + 1.0 / capacitance) / supply.resistance
                 mean = -0.5 * (u[tip] + after[tip])
-                fed = (stack.voltage + alpha * mean / held) / supply.resistance
+                fed = (stack.voltage + alpha * mean / capacitance) / supply.resistance
                 taken = ((1.0 - change) * charge + dt * fed) / (1.0 + change)
                 heat = supply.resistance * (taken - charge) ** 2 / dt
             force = 0.5 * (self.force(u[tip], charge) + self.force(after[tip], taken))
@@ -146,7 +146,7 @@ class StackBody:
                     low, high = (low, share) if -after[0][tip] >= stack.gap else (share, high)
                 work, heat = work + after[3], heat + after[4]
                 shape = (self.count, 2)
-                return Touch(
+                return FirstContact(
                     *(time + share * step, after[0].reshape(shape), after[1].reshape(shape)),
                     *(after[2], work, heat),
                 )
@@ -163,23 +163,23 @@ class StackBody:
         if stack.drive is None:
             return stack.blocked_force
         alpha = stack.force_per_voltage
-        return alpha * (charge + alpha * tip) / stack.held_capacitance
+        return alpha * (charge + alpha * tip) / stack.clamped_capacitance
 
     def voltage(self, node: int) -> structures.Voltage:
         """For the time loop, from the touch on; ``node`` of the cap in the system."""
         stack, supply, made = self.stack, self.stack.drive, structures.Voltage()
         made.node, made.force_per_voltage = node, stack.force_per_voltage
-        made.capacitance, made.source = stack.held_capacitance, stack.voltage
+        made.capacitance, made.source = stack.clamped_capacitance, stack.voltage
         if supply is not None:
             made.resistance, made.elastance = supply.resistance, supply.elastance
-        made.charge = self.touch.charge
+        made.charge = self.first_contact.charge
         return made
 
     def taken(self, voltage: structures.Voltage, extension: float) -> float:
         """Energy that buffer or source have lost, J; ``extension`` of the tip, m."""
         stack = self.stack
         if stack.drive is None:
-            charge = stack.held_capacitance * stack.voltage + stack.force_per_voltage * extension
+            charge = stack.clamped_capacitance * stack.voltage + stack.force_per_voltage * extension
             return stack.voltage * charge
         charge = float(voltage.charge)
         return stack.voltage * charge - 0.5 * stack.drive.elastance * charge**2

@@ -16,7 +16,7 @@ from ..explicit.contact import Contact, MatchedContact, RigidBody
 from ..explicit.film import Film
 from ..explicit.parts import Rows
 from ..explicit.plastic import Plasticity
-from .elasticity import BodyMatrices, scatter
+from .elasticity import BodyMatrices, global_matrix
 from .mesh import BodyMesh
 from .stack import StackBody
 from .tip import ring_edges
@@ -81,11 +81,11 @@ class AxisymmetricSystem:
         return np.zeros(0, dtype=np.int64)
 
     @property
-    def held(self) -> Mask:
+    def supported(self) -> Mask:
         """(n,) nodes of the support."""
-        held = np.zeros(self.mass.size, dtype=bool)
-        held[self.supports] = True
-        return held
+        supported = np.zeros(self.mass.size, dtype=bool)
+        supported[self.supports] = True
+        return supported
 
     def element_time_steps(self) -> Floats:
         """(m,) critical time step of each element alone, s."""
@@ -95,7 +95,7 @@ class AxisymmetricSystem:
         """(2n, 2n) stiffness of some elements (m,), or of all, N/m."""
         which = slice(None) if chosen is None else chosen
         nodes, stiffness = self.element_nodes[which], self.element_stiffness[which]
-        return scatter(nodes, stiffness, self.mass.size)
+        return global_matrix(nodes, stiffness, self.mass.size)
 
     def operator(self) -> Rows:
         """K for the compiled loop."""

@@ -138,8 +138,8 @@ def _failure(status: int, log: Path) -> str:
     text = log.read_text(encoding="ascii", errors="replace")
     if status < 0:
         return f"CalculiX was ended by signal {-status} ({signal.Signals(-status).name})"
-    told = re.search(r"\*ERROR[^\n]*(?:\n {5,}[^\n]*)*", text)
+    error_text = re.search(r"\*ERROR[^\n]*(?:\n {5,}[^\n]*)*", text)
     at = re.findall(r"actual total time=(\S+)", text)
-    reason = " ".join(told.group().split()) if told else "it did not say why"
+    reason = " ".join(error_text.group().split()) if error_text else "it did not say why"
     when = f" at {float(at[-1]):.4g} ms" if at else ""
     return f"CalculiX failed with status {status}{when}: {reason}"

@@ -149,20 +149,20 @@ def wedge(plane: Quadratic, node: int, element: int) -> Wedge:
     on_axis = plane.points[:, 0] == 0.0
     for k, quad in enumerate(plane.quads):
         number = element + k
-        touching = [edge for edge in range(4) if on_axis[quad[list(EDGES[edge])]].all()]
+        on_axis_edges = [edge for edge in range(4) if on_axis[quad[list(EDGES[edge])]].all()]
         if not on_axis[quad[:4]].any():
             a, b = quad[:4], quad[4:]
             ids = [second[a], first[a], second[b], first[b], half[a]]
             elements["C3D20R"].append((number, np.concatenate(ids).tolist()))
             faces |= {(k, edge): (number, f"S{3 + edge}") for edge in range(4)}
             continue
-        if len(touching) != 1:
+        if len(on_axis_edges) != 1:
             r, z = plane.points[quad[:4]].mean(axis=0)
             raise SolverError(
                 f"the element at r = {r:.4g} m, z = {z:.4g} m has but one corner on the axis"
             )
         # From the axis' lower node on: bottom a b, outer side b c, top c d.
-        turn = [(touching[0] + 1 + j) % 4 for j in range(4)]
+        turn = [(on_axis_edges[0] + 1 + j) % 4 for j in range(4)]
         a, b, c, d = quad[turn]
         ab, bc, cd, da = quad[4:][turn]
         ids = [first[a], first[b], second[b], first[d], first[c], second[c], first[ab], half[b]]

@@ -264,7 +264,7 @@ class Stack:
         return self.blocked_force / self.stroke
 
     @property
-    def held_capacitance(self) -> float:
+    def clamped_capacitance(self) -> float:
         """Of the stack held at its length, F."""
         return self.capacitance - self.force_per_voltage**2 / self.stiffness
 

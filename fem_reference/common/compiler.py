@@ -15,13 +15,13 @@ def compiler() -> str:
     Raises:
         SolverError: there is none.
     """
-    asked = os.environ.get("CC")
-    for name in (asked,) if asked else ("cc", "gcc", "clang"):
+    requested = os.environ.get("CC")
+    for name in (requested,) if requested else ("cc", "gcc", "clang"):
         path = shutil.which(name)
         if path:
             return path
     raise SolverError(
-        f"no C compiler found ({asked or 'cc, gcc, clang'}); the time loop needs one: "
+        f"no C compiler found ({requested or 'cc, gcc, clang'}); the time loop needs one: "
         "install gcc or set CC"
     )
 

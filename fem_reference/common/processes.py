@@ -77,9 +77,9 @@ def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str
     Raises:
         SolverError: there is no mpirun.
     """
-    kept = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
+    inherited = {k: v for k, v in os.environ.items() if not k.startswith(INHERITED)}
     if processes == 1:
-        return command, kept
+        return command, inherited
     program = launcher()
     if program is None:
         raise SolverError(
@@ -103,7 +103,7 @@ def launched_by(command: list[str], processes: int) -> tuple[list[str], dict[str
         # Somebody else needs a processor too: waiting must not keep it busy.
         settings["OMPI_MCA_mpi_yield_when_idle"] = "1"
         settings["MPIR_CVAR_POLLS_BEFORE_YIELD"] = "1"
-    return [program, "-n", str(processes), *command], {**settings, **kept}
+    return [program, "-n", str(processes), *command], {**settings, **inherited}
 
 
 def _launch(processes: int) -> None:
@@ -122,8 +122,8 @@ def _launch(processes: int) -> None:
     os.execve(command[0], command, environment)
 
 
-def threads_per_process(asked: int, comm: Any) -> int:
-    """Threads of this process: its share of those ``asked`` for on its machine, 0: of its cores."""
+def threads_per_process(requested: int, comm: Any) -> int:
+    """Threads of this process: its share of those requested on its machine, 0: of its cores."""
     processes, there = 1, len(affinity())
     if comm.size > 1:
         from .fenicsx import on_this_machine
@@ -133,7 +133,7 @@ def threads_per_process(asked: int, comm: Any) -> int:
         # A launcher may have bound every process to cores of its own.
         there = len(frozenset().union(*here.allgather(affinity())))
         here.Free()
-    return max(1, int(asked or min(there, quota())) // processes)
+    return max(1, int(requested or min(there, quota())) // processes)
 
 
 def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> None:

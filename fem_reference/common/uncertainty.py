@@ -85,7 +85,7 @@ class Estimate:
 
     extrapolated: float
     """Value at vanishing element size."""
-    scatter: float
+    deviation: float
     """Standard deviation of the finest mesh about the fit."""
     band: float
     """Half width of the 95 % band about the finest mesh's value."""
@@ -93,8 +93,8 @@ class Estimate:
 
 def least_squares(values: Floats, sizes: Floats) -> Estimate:
     """Error estimate and 95 % band of one quantity; see `bands`, for values (n,)."""
-    limit, scatter, band = bands(values, sizes)
-    return Estimate(float(limit), float(scatter), float(band))
+    limit, deviation, band = bands(values, sizes)
+    return Estimate(float(limit), float(deviation), float(band))
 
 
 def bands(values: Floats, sizes: Floats) -> tuple[Floats, Floats, Floats]:
@@ -117,8 +117,8 @@ def bands(values: Floats, sizes: Floats) -> tuple[Floats, Floats, Floats]:
     differences = weights * (values - values[0]).reshape(count, -1)
     fitted = np.linalg.lstsq(matrix, differences, rcond=None)[0]
     misses = differences - matrix @ fitted
-    scatter = np.sqrt(np.sum(misses**2, axis=0) / (count - 2))
-    standard_error = scatter * math.sqrt(np.linalg.inv(matrix.T @ matrix)[0, 0])
+    deviation = np.sqrt(np.sum(misses**2, axis=0) / (count - 2))
+    standard_error = deviation * math.sqrt(np.linalg.inv(matrix.T @ matrix)[0, 0])
     band = np.abs(fitted[0]) + STANDARD_ERRORS * standard_error
     shape = values.shape[1:]
-    return values[0] + fitted[0].reshape(shape), scatter.reshape(shape), band.reshape(shape)
+    return values[0] + fitted[0].reshape(shape), deviation.reshape(shape), band.reshape(shape)

@@ -36,7 +36,7 @@ class Tetrahedra:
     diagonal: Floats
 
     def divided(
-        self, element: Ints, node: Ints, held: Mask, threads: int, arrays: kernel.Arrays
+        self, element: Ints, node: Ints, supported: Mask, threads: int, arrays: kernel.Arrays
     ) -> Divided:
         """See `explicit.stiffness.Stiffness`."""
         level = element[self.element]
@@ -46,7 +46,7 @@ class Tetrahedra:
         parts = []
         for number in levels:
             moves = node == number
-            groups = [np.flatnonzero(moves & ~held), np.flatnonzero(moves & held)]
+            groups = [np.flatnonzero(moves & ~supported), np.flatnonzero(moves & supported)]
             for q in range(threads):
                 made = self._part(level == number, part == q, arrays)
                 made.number, made.part = q, shared

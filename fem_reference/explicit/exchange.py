@@ -42,11 +42,11 @@ class Exchange:
         self._coming = [self._end(places) for _, places in got]
         self._requests = [
             prepare(values, rank)
-            for prepare, ends, partners in (
+            for prepare, ends, neighbours in (
                 (comm.Recv_init, self._coming, got),
                 (comm.Send_init, self._going, sent),
             )
-            for (_, values), (rank, _) in zip(ends, partners, strict=True)
+            for (_, values), (rank, _) in zip(ends, neighbours, strict=True)
         ]
 
     def _end(self, places: Ints) -> tuple[tuple[Any, ...], Floats]:

@@ -31,14 +31,14 @@ class Frames:
         """Samples per frame at a sample: doubles whenever there are twice too many frames."""
         return int(2 ** max(0, math.ceil(math.log2(max(1, sample) / (2 * self.count)))))
 
-    def _wanted(self, sample: int) -> bool:
+    def _is_due(self, sample: int) -> bool:
         if sample in self.samples:
             return True
         return self.count > 0 and sample % self._stride(sample) == 0
 
     def __call__(self, sample: int, loop: Loop) -> None:
         """Keep the frame of a sample if it is wanted."""
-        if not self._wanted(sample):
+        if not self._is_due(sample):
             return
         displacement = loop.gather(loop.u)
         if loop.springs is not None:
@@ -47,10 +47,10 @@ class Frames:
             return
         self.folder.mkdir(parents=True, exist_ok=True)
         np.save(self.folder / f"frame-{sample:08d}.npy", displacement)
-        for kept in self._files():
-            number = int(kept.stem.split("-")[1])
+        for path in self._files():
+            number = int(path.stem.split("-")[1])
             if self.count and number not in self.samples and number % self._stride(sample):
-                kept.unlink(missing_ok=True)
+                path.unlink(missing_ok=True)
 
     def following(self, sample: int) -> int:
         """The next sample whose frame is wanted, or one far away."""

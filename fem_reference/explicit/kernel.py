@@ -67,12 +67,12 @@ class Arrays:
     """Keeps the arrays that C structures point to."""
 
     def __init__(self) -> None:
-        self._kept: list[object] = []
+        self._references: list[object] = []
 
     def pointer(self, array: npt.ArrayLike, dtype: type[np.generic]) -> Any:
         """Pointer to the array itself where type and layout fit, else to a copy."""
         contiguous = np.ascontiguousarray(np.asarray(array, dtype=dtype))
-        self._kept.append(contiguous)
+        self._references.append(contiguous)
         return contiguous.ctypes.data_as(ctypes.POINTER(_C_TYPES[dtype]))
 
 

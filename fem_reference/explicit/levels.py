@@ -22,24 +22,26 @@ BUFFER = 2
 MOST_LEVELS = 5
 
 
-def graded_levels(steps: Floats, nodes: Ints, touching: npt.NDArray[np.bool_], most: int) -> Ints:
+def graded_levels(
+    steps: Floats, nodes: Ints, contact_nodes: npt.NDArray[np.bool_], most: int
+) -> Ints:
     """(m,) level of each element of any mesh.
 
     Args:
         steps: (m,) critical time steps of the elements over that of level 0.
         nodes: (m, k) of the elements.
-        touching: (n,) nodes whose elements have level 0.
+        contact_nodes: (n,) nodes whose elements have level 0.
         most: levels.
     """
     octaves = np.floor(np.log2(np.maximum(LEVEL_MARGIN * steps, 1.0)))
     level = np.minimum(octaves, max(0, most - 1)).astype(np.int64)
-    level[touching[nodes].any(axis=1)] = 0
+    level[contact_nodes[nodes].any(axis=1)] = 0
     # A level begins only `BUFFER` layers behind the elements two levels faster, and not within
     # `BUFFER` layers of an element that is too fast for it.
     for bound in range(int(level.max())):
         near = level <= bound
         for _ in range(BUFFER):
-            reached = np.zeros(touching.size, dtype=bool)
+            reached = np.zeros(contact_nodes.size, dtype=bool)
             reached[nodes[near]] = True
             near = reached[nodes].any(axis=1)
         level[near & (level > bound + 1)] = bound + 1

@@ -50,8 +50,8 @@ class Loop(ABC):
         self.system, self.comm = system, comm
         self.components = system.points.shape[1]
         self.mass = system.mass[system.owned]
-        kept = np.concatenate([system.owned, system.ghosts])
-        rows = (self.components * kept[:, None] + np.arange(self.components)).ravel()
+        local_nodes = np.concatenate([system.owned, system.ghosts])
+        rows = (self.components * local_nodes[:, None] + np.arange(self.components)).ravel()
         own = slice(self.components * system.owned.size)
         self._inverse = system.inverse_mass[rows]
         self.rows, self.inverse = rows[own], self._inverse[own]
@@ -81,16 +81,16 @@ class Loop(ABC):
         system = self.system
         if most <= 1:
             return np.zeros(system.element_nodes.shape[0], dtype=np.int64)
-        touching = np.zeros(system.mass.size, dtype=bool)
-        touching[self.problem.nodes] = True
+        contact_nodes = np.zeros(system.mass.size, dtype=bool)
+        contact_nodes[self.problem.nodes] = True
         for contact in system.matched:
-            touching[contact.candidates] = touching[contact.opposite] = True
+            contact_nodes[contact.candidates] = contact_nodes[contact.opposite] = True
         if system.film is not None:
-            touching[system.film.nodes] = True
+            contact_nodes[system.film.nodes] = True
         if system.plasticity is not None:
-            touching[system.plasticity.nodes] = True
+            contact_nodes[system.plasticity.nodes] = True
         steps = system.element_time_steps() / time_step
-        return graded_levels(steps, system.element_nodes, touching, most)
+        return graded_levels(steps, system.element_nodes, contact_nodes, most)
 
     def set_step(self, time_step: float, split: int, most_levels: int = 1) -> None:
         """Set what a run is stepped with.
@@ -140,7 +140,7 @@ class Loop(ABC):
         return float(self.problem.state.dt)
 
     @property
-    def touching(self) -> bool:
+    def is_in_contact(self) -> bool:
         """Whether any contact carried a force in the last step."""
         return any(record.force > 0.0 for record in self.problem.records())
 
@@ -243,10 +243,14 @@ class SerialLoop(Loop):
     def _divide(self, element: Ints, node: Ints) -> None:
         """Let elements (m,) act and nodes (N,) move with these levels."""
         system, arrays = self.system, kernel.Arrays()
-        kept = np.concatenate([system.owned, system.ghosts])
+        local_nodes = np.concatenate([system.owned, system.ghosts])
         # The supports' share of a node is its own process'.
-        held = system.held[kept] & (np.arange(kept.size) < system.owned.size)
-        self.divided = self._stiffness.divided(element, node[kept], held, self.threads, arrays)
+        supported = system.supported[local_nodes] & (
+            np.arange(local_nodes.size) < system.owned.size
+        )
+        self.divided = self._stiffness.divided(
+            element, node[local_nodes], supported, self.threads, arrays
+        )
         made = self.divided.parts
         parts = (structures.PARTS[self.components] * len(made))(*made)
         self._state.levels = len(made) // self.threads

@@ -44,7 +44,7 @@ class ParallelLoop(SerialLoop):
         if comm.rank != FIRST:
             self._idle = structures.Problem()
             self._state.problem = ctypes.pointer(self._idle)
-        self._told = _told(self.problem)
+        self._broadcast_memory = _broadcast_memory(self.problem)
         count = system.mass.size
         self._present = [np.zeros(count, dtype=bool) for _ in range(comm.size)]
         for rank, present in enumerate(self._present):
@@ -61,8 +61,8 @@ class ParallelLoop(SerialLoop):
     def _place(self) -> Ints:
         """(N,) place of each node in this process' vectors, -1: none."""
         place = np.full(self.system.mass.size, -1, dtype=np.int64)
-        kept = np.concatenate([self.system.owned, self.system.ghosts])
-        place[kept] = np.arange(kept.size)
+        local_nodes = np.concatenate([self.system.owned, self.system.ghosts])
+        place[local_nodes] = np.arange(local_nodes.size)
         return place
 
     def _sum(self, moves: Mask, stride: int) -> Sum:
@@ -144,9 +144,9 @@ class ParallelLoop(SerialLoop):
             library.process_acts(state, step)
             self._summed(step)(f)
             library.process_follows(state)
-        self._tell()
+        self._send_state()
 
-    def _tell(self) -> None:
+    def _send_state(self) -> None:
         """Tell all processes what the first one's problem has come to, supports of all included."""
         reaction = np.zeros(3)
         if self.comm.rank != FIRST:
@@ -154,15 +154,15 @@ class ParallelLoop(SerialLoop):
             self._idle.reaction[:] = [0.0, 0.0, 0.0]
         reaction = self.total(reaction) + np.array(self.problem.state.reaction)
         self.problem.state.reaction[:] = reaction.tolist()
-        message = np.concatenate(self._told)
+        message = np.concatenate(self._broadcast_memory)
         self.comm.Bcast(message, FIRST)
         start = 0
-        for part in self._told:
+        for part in self._broadcast_memory:
             part[:] = message[start : start + part.size]
             start += part.size
 
 
-def _told(problem: ContactProblem) -> list[npt.NDArray[np.uint8]]:
+def _broadcast_memory(problem: ContactProblem) -> list[npt.NDArray[np.uint8]]:
     """Memory of all numbers of a problem that steps change and that runs look at."""
 
     def memory(structure: ctypes.Structure, start: int) -> npt.NDArray[np.uint8]:

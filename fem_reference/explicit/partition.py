@@ -15,7 +15,9 @@ SLACK = 0.02
 """Share of a level that a part may have more or less of, so that its border is smoother."""
 
 
-def owners(points: Floats, elements: Ints, steps: Floats, touching: Ints, processes: int) -> Ints:
+def owners(
+    points: Floats, elements: Ints, steps: Floats, contact_nodes: Ints, processes: int
+) -> Ints:
     """(m,) process of each element; those at nodes that can touch are all the first one's.
 
     Meshes grow away from the contacts, so the parts are cones and sectors from there: cut in two
@@ -25,15 +27,15 @@ def owners(points: Floats, elements: Ints, steps: Floats, touching: Ints, proces
         points: (n, 3) m.
         elements: (m, k) nodes.
         steps: (m,) critical time step of each element, s.
-        touching: nodes that can touch.
+        contact_nodes: nodes that can be in contact.
         processes: how many.
     """
     near = np.zeros(points.shape[0], dtype=bool)
-    near[touching] = True
+    near[contact_nodes] = True
     level = graded_levels(steps / (EXPECTED * steps.min()), elements, near, MOST_LEVELS)
     groups = np.where(near[elements].any(axis=1), -1, level)
     centres = points[elements[:, :4]].mean(axis=1)
-    away = centres - points[touching if touching.size else slice(None)].mean(axis=0)
+    away = centres - points[contact_nodes if contact_nodes.size else slice(None)].mean(axis=0)
     direction = away / np.maximum(np.linalg.norm(away, axis=1), 1e-300)[:, None]
     angle = np.arctan2(away[:, [1, 2, 2]], away[:, [0, 1, 0]])
     owner = np.zeros(elements.shape[0], dtype=np.int64)
@@ -81,9 +83,9 @@ def _lower(field: Floats, groups: Ints, share: float) -> Mask:
         size = np.count_nonzero(members)
         given = min(2.0**number * owed, share * size)
         owed -= given / 2.0**number
-        wanted = share - given / size
+        target = share - given / size
         least, most = np.quantile(
-            field[members], [max(0.0, wanted - SLACK), min(1.0, wanted + SLACK)]
+            field[members], [max(0.0, target - SLACK), min(1.0, target + SLACK)]
         )
         lower[members] = field[members] <= min(max(cut, least), most)
     return lower

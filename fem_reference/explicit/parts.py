@@ -36,14 +36,14 @@ class Rows:
         return Rows(part, part(None).diagonal(), components)
 
     def divided(
-        self, element: Ints, node: Ints, held: Mask, threads: int, arrays: kernel.Arrays
+        self, element: Ints, node: Ints, supported: Mask, threads: int, arrays: kernel.Arrays
     ) -> Divided:
         """See `explicit.stiffness.Stiffness`."""
         levels = int(element.max()) + 1
         parts: list[structures.RowPart] = []
         for level in range(levels):
             matrix = self.part(None if levels == 1 else element == level)
-            blocks = Blocks.of(matrix, self.components, node == level, held)
+            blocks = Blocks.of(matrix, self.components, node == level, supported)
             parts += level_parts(blocks, threads, arrays)
         rows = np.reshape([int(part.rows) for part in parts], (levels, threads)).sum(axis=1)
         blocks_stored = sum(int(part.row[part.rows] + part.outer[part.border]) for part in parts)
@@ -65,14 +65,14 @@ class Blocks:
     column: Ints
     data: Floats
     moves: Mask
-    held: Mask
+    supported: Mask
 
     @staticmethod
-    def of(matrix: scipy.sparse.csr_matrix, size: int, moves: Mask, held: Mask) -> Blocks:
+    def of(matrix: scipy.sparse.csr_matrix, size: int, moves: Mask, supported: Mask) -> Blocks:
         """From the rows of this process' nodes, ``size`` components each."""
         blocks = matrix.tobsr((size, size))
         row = np.repeat(np.arange(blocks.indptr.size - 1), np.diff(blocks.indptr))
-        return Blocks(row, blocks.indices.astype(np.int64), blocks.data, moves, held)
+        return Blocks(row, blocks.indices.astype(np.int64), blocks.data, moves, supported)
 
     def divided(self, parts: int) -> Ints:
         """Part of each node: stretches of the numbering with as many blocks; -1: another process.
@@ -102,10 +102,10 @@ def _part(
     """The part of the nodes ``inside``; ``crossing`` are the blocks between two parts."""
     present = np.zeros(inside.size, dtype=bool)
     present[blocks.row] = True
-    touched = np.flatnonzero(present & inside)
-    edge, inner = touched[border[touched]], touched[~border[touched]]
+    reached = np.flatnonzero(present & inside)
+    edge, inner = reached[border[reached]], reached[~border[reached]]
     groups = [edge[blocks.moves[edge] == moving] for moving in (False, True)] + [
-        inner[(blocks.moves[inner] == moving) & (blocks.held[inner] == hold)]
+        inner[(blocks.moves[inner] == moving) & (blocks.supported[inner] == hold)]
         for moving in (False, True)
         for hold in (False, True)
     ]

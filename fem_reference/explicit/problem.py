@@ -19,7 +19,7 @@ TOLERANCE = 1e-12
 """Change of a multiplier in the last Gauss-Seidel sweep, over the largest multiplier."""
 
 
-def touching(contacts: Iterable[Contact], first: Ints) -> Ints:
+def contact_nodes(contacts: Iterable[Contact], first: Ints) -> Ints:
     """Surface nodes that can touch; ``first`` node of each body."""
     parts: list[Ints] = []
     for contact in contacts:
@@ -42,7 +42,7 @@ class ContactProblem:
     """
 
     def __init__(self, system: System) -> None:
-        self.nodes = touching(system.contacts, system.first)
+        self.nodes = contact_nodes(system.contacts, system.first)
         components = system.points.shape[1]
         size = components * self.nodes.size
         self.u, self.predicted, self.before, self.force = (np.zeros(size) for _ in range(4))

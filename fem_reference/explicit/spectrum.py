@@ -31,7 +31,7 @@ def critical_time_step(loop: Loop) -> float:
     vector /= math.sqrt(loop.dot(vector, vector))
     before = np.zeros_like(vector)
     diagonal: list[float] = []
-    beside: list[float] = []
+    off_diagonal: list[float] = []
     beta = 0.0
     for step in range(LANCZOS_STEPS):
         image = root * loop.product(root * vector) - beta * before
@@ -41,12 +41,12 @@ def critical_time_step(loop: Loop) -> float:
         diagonal.append(alpha)
         if beta == 0.0 or step % 10 == 9 or step == LANCZOS_STEPS - 1:
             values, vectors = eigh_tridiagonal(
-                diagonal, beside, select="i", select_range=(len(diagonal) - 1,) * 2
+                diagonal, off_diagonal, select="i", select_range=(len(diagonal) - 1,) * 2
             )
             residual = beta * abs(float(vectors[-1, 0]))
             if residual <= LANCZOS_TOLERANCE * float(values[0]):
                 return 2.0 / math.sqrt(float(values[0]) + residual)
-        beside.append(beta)
+        off_diagonal.append(beta)
         before, vector = vector, image / beta
     raise SolverError("the largest eigenvalue of the system was not found; the mesh may be poor")
 

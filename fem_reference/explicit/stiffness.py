@@ -43,14 +43,14 @@ class Stiffness(Protocol):
         """(C n,) of K, N/m."""
 
     def divided(
-        self, element: Ints, node: Ints, held: Mask, threads: int, arrays: Arrays
+        self, element: Ints, node: Ints, supported: Mask, threads: int, arrays: Arrays
     ) -> Divided:
         """Divide K for the compiled loop, which reads what ``arrays`` keeps.
 
         Args:
             element: (m,) level of each element of the system.
             node: (n,) level of each node, that of its fastest element.
-            held: (n,) nodes that are held somewhere.
+            supported: (n,) nodes with a support in some direction.
             threads: that sum one part of every level each.
             arrays: keeps what the parts point to.
         """

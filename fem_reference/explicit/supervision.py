@@ -123,7 +123,7 @@ def supervise(
     """
     saved: dict[str, Any] = (checkpoint.load() if checkpoint else None) or {}
     critical = float(saved["critical"]) if saved else critical_time_step()
-    time_step, stride, wanted, most = _steps(loop, plan, courant * critical, critical)
+    time_step, stride, required, most = _steps(loop, plan, courant * critical, critical)
     split = max(1, round(CHATTER_FRACTION * plan.duration / time_step))
     loop.set_step(time_step, split, most)
     interval = stride * time_step
@@ -144,8 +144,8 @@ def supervise(
         seconds = float(saved["seconds"])
     chunk = plan.chunk or max(CHUNK_SAMPLES, math.ceil(CHUNK_STEPS / stride))
     started = time.perf_counter()
-    while samples < wanted:
-        count = min(chunk, wanted - samples)
+    while samples < required:
+        count = min(chunk, required - samples)
         if frames is not None:
             frames(samples, loop)
             count = min(count, frames.following(samples) - samples)
@@ -186,7 +186,7 @@ def _sampled(
         return [sample(samples, stride)]
     film = loop.problem.film
     if film is not None:
-        return _sampled_beside_film(loop, film, sample, samples, stride)
+        return _sampled_with_film(loop, film, sample, samples, stride)
     rows, part = [], max(1, round(duration / RELAXATION_LOOKS / (stride * loop.dt)))
     for first in range(0, samples, part):
         rows.append(sample(min(part, samples - first), stride))
@@ -194,7 +194,7 @@ def _sampled(
     return rows
 
 
-def _sampled_beside_film(
+def _sampled_with_film(
     loop: Loop, film: structures.Film, sample: Sample, samples: int, stride: int
 ) -> list[Floats]:
     """``samples`` rows; where the film pushes the ledger looks whenever all levels meet.
@@ -235,8 +235,8 @@ def _steps(
         longest = math.ceil(plan.longest * plan.duration / (stride * time_step))
         return time_step, stride, longest, most
     # The last sample falls exactly on the end: the step shrinks by less than one part in 1000.
-    wanted = max(1, math.ceil(plan.end_time / (stride * time_step) - 1e-9))
-    return plan.end_time / (wanted * stride), stride, wanted, most
+    required = max(1, math.ceil(plan.end_time / (stride * time_step) - 1e-9))
+    return plan.end_time / (required * stride), stride, required, most
 
 
 def stable_run(attempt: Callable[[int], T], account: Callable[[T], Account]) -> T:

@@ -47,7 +47,7 @@ class System(Protocol):
         """Nodes of other processes at this one's elements."""
 
     @property
-    def held(self) -> Mask:
+    def supported(self) -> Mask:
         """(N,) nodes whose forces count as the supports' where they are fixed."""
 
     @property

@@ -105,7 +105,7 @@ def solve(flight: Document) -> Document:
     return {
         **flight,
         "found": {"seat": name, "place": flown.place, "time": flown.time, "rests": flown.rests}
-        | {"first_touch": flown.first_touch},
+        | {"first_touch": flown.first_contact},
     }
 
 

@@ -56,7 +56,7 @@ class Flown:
     """Where the sphere lies, mm."""
     time: float
     """ms"""
-    first_touch: tuple[float, float, float] | None
+    first_contact: tuple[float, float, float] | None
     """Time in ms, x and z in mm."""
     rests: bool
 
@@ -161,7 +161,7 @@ class Sphere:
 
     def fly(self, end: float) -> Flown:
         """Until the sphere lies still, at latest ``end`` ms."""
-        first = self._first_touch(end)
+        first = self._first_contact(end)
         still = 0
         last = self._place()
         while self.data.time < end and still < 3:
@@ -173,7 +173,7 @@ class Sphere:
             last = place
         return Flown(last, self.data.time, first, still >= 3)
 
-    def _first_touch(self, end: float) -> tuple[float, float, float] | None:
+    def _first_contact(self, end: float) -> tuple[float, float, float] | None:
         """To the first touch after the seat is left: back from where it is found, by its depth."""
         left = False
         while self.data.time < end:
@@ -181,14 +181,14 @@ class Sphere:
             # of the way that led there, since velocities are half a step early
             vx, vz = (float(v) for v in self.data.qvel[:2])
             self.step()
-            touches = self.data.ncon > 0
-            if touches and left:
+            in_contact = self.data.ncon > 0
+            if in_contact and left:
                 # the contact is found where the step began; its normal goes into the wall
                 contact = min(self.data.contact, key=lambda contact: contact.dist)
                 approach = vx * contact.frame[0] + vz * contact.frame[2]
                 early = float(contact.dist / approach)
                 return time + early, x + early * vx, z + early * vz
-            left = left or not touches
+            left = left or not in_contact
         return None
 
     def passes(

@@ -95,6 +95,6 @@ class Ending:
     def __call__(self, energies: Energies, now: float) -> bool:
         """Whether the state at an instant (s) allows no further contact."""
         last = max(record.last + 1 for record in self.loop.problem.records()) * self.loop.dt
-        if now < last * self.window or self.loop.touching:
+        if now < last * self.window or self.loop.is_in_contact:
             return False
         return all(approach.is_over() for approach in self.approaches(energies))

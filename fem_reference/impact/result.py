@@ -243,7 +243,7 @@ class _Result:
                 name: {
                     "values": [mesh.values[name] for mesh in meshes],
                     "extrapolated": estimate.extrapolated,
-                    "scatter": estimate.scatter,
+                    "scatter": estimate.deviation,
                     "band": estimate.band,
                 }
                 for name, estimate in found.items()

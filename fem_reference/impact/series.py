@@ -210,13 +210,13 @@ class Series(Generic[S]):
         coarser = range(finest + 1, finest + MESHES)
         self.lead = None
         if self.solver.leads is None:
-            kept = [self._kept(number, finest) for number in reversed(coarser)][::-1]
+            stored = [self._stored(number, finest) for number in reversed(coarser)][::-1]
             solution = self._compute(finest, finest)
         else:
             solution = self.lead = self._compute(finest, finest)
-            kept = []
+            stored = []
         found = self._result(finest, solution)
-        return solution, [found, *(kept or [self._kept(number, finest) for number in coarser])]
+        return solution, [found, *(stored or [self._stored(number, finest) for number in coarser])]
 
     def _factor(self, number: int) -> float:
         return float(self.factor * self.solver.ratio**number)
@@ -262,7 +262,7 @@ class Series(Generic[S]):
         values = self.solver.quantities(solution)
         return MeshResult(factor, values, run.times, run.rows, numbers)
 
-    def _kept(self, number: int, finest: int) -> MeshResult:
+    def _stored(self, number: int, finest: int) -> MeshResult:
         """A coarser mesh's, from its files if an earlier start has come that far."""
         found = self._load(number) if self.comm.rank == 0 else None
         found = cast("MeshResult | None", self.comm.bcast(found))

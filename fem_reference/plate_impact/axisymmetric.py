@@ -37,7 +37,7 @@ from .meshing import (
     mesh_impact,
     mesh_settings,
 )
-from .repeated import Kept, strike
+from .repeated import StoredRuns, strike
 from .run import Run
 from .scene import Scene
 from .suitability import Resolution, Suitability, per_wavelength, resolution_of, within_zones
@@ -272,7 +272,7 @@ def compute(
     estimate = estimate_contact(scene)
     radii = (estimate.outer_radius, estimate.inner_radius) if like is None else like.radii
     reach = YIELDING_REACH if like is None else like.reach
-    asked = scene.elements_per_contact_radius * factor
+    requested = scene.elements_per_contact_radius * factor
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
         if like is None:
@@ -291,7 +291,7 @@ def compute(
             resolution = resolution_of(scene, mesh, run, estimate.duration)
             return Suitability(
                 resolution,
-                asked,
+                requested,
                 within_zones(mesh, run, 0.999),
                 motion.dents is None or not motion.dents.reach_the_edge(),
             )
@@ -299,7 +299,7 @@ def compute(
         struck = strike(
             scene.series,
             stepper,
-            Kept(settings, attempt, [*method(scene), reach], system),
+            StoredRuns(settings, attempt, [*method(scene), reach], system),
             lambda run, motion: like is not None or suits(run, motion).accepted,
             None if like is None else len(like.runs),
         )

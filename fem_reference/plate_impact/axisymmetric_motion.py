@@ -156,9 +156,9 @@ class AxisymmetricMotion:
         system, voltage = self.system, self.voltage
         if voltage is None or system.stack is None:
             return 0.0, 0.0, None
-        touch, stack = system.stack.touch, system.stack.stack
-        start = float(system.stack.matrices.mass @ touch.velocity[:, 1])
-        work = touch.work + voltage.work
+        first_contact, stack = system.stack.first_contact, system.stack.stack
+        start = float(system.stack.matrices.mass @ first_contact.velocity[:, 1])
+        work = first_contact.work + voltage.work
         extension = -float(self.loop.u[2 * voltage.node + 1])
         taken = system.stack.taken(voltage, extension)
         momentum = start + stack.mass * stack.step_speed + voltage.impulse

@@ -244,7 +244,7 @@ def compute(
     estimate = estimate_contact(scene)
     radii = (estimate.outer_radius, estimate.inner_radius) if like is None else like.radii
     end = scene.end_time if like is None else float(like.run.times[-1])
-    asked = scene.elements_per_contact_radius * QUADRATIC * factor
+    requested = scene.elements_per_contact_radius * QUADRATIC * factor
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
         sizes = mesh_settings(scene, *radii, QUADRATIC * factor)
@@ -254,7 +254,7 @@ def compute(
         )
         resolution = resolution_of(scene, mesh, run, estimate.duration)
         inside = within_zones(mesh, run, SLAVES)
-        found = Suitability(resolution, asked, inside, True)
+        found = Suitability(resolution, requested, inside, True)
         if like is not None or found.accepted:
             return Solution(
                 *(run, mesh, made, resolution, estimate, attempt, factor, radii, frequency),

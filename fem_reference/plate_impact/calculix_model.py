@@ -35,7 +35,7 @@ def require_supported(scene: Scene, options: Options) -> None:
     Raises:
         SceneError: naming the field, its value and what it must be.
     """
-    asked = {
+    unsupported = {
         "fields are requested; this solver writes none": bool(
             options.stress_times or options.frame_times
         ),
@@ -52,10 +52,10 @@ def require_supported(scene: Scene, options: Options) -> None:
         ),
     }
     for name, body in (("outer", scene.outer), ("inner", scene.inner)):
-        asked[
+        unsupported[
             f"{name}.kind is '{type(body).__name__.lower()}'; it must be 'sphere'"
         ] = not isinstance(body, Sphere)
-    for reason, refused in asked.items():
+    for reason, refused in unsupported.items():
         if refused:
             raise SceneError(f"{reason}: --solver calculix has dry elastic spheres on a plate only")
 

@@ -37,7 +37,7 @@ class HalfMotion(SolidMotion):
         self._looked: list[Floats | None] = [None, None]
         faces = [side * 0.5 * scene.plate.thickness for side in SIDES]
         points = plate.model.elastic[plate.elastic[PLATE]].mesh.points
-        self._beside: list[Ints] = [
+        self._off_centre: list[Ints] = [
             np.setdiff1d(np.flatnonzero(points[:, 2] == face), contact.nodes)
             for face, contact in zip(faces, plate.model.contacts, strict=True)
         ]
@@ -88,7 +88,7 @@ class HalfMotion(SolidMotion):
                 displacement = self.loop.gather(self.loop.u)
             if row in self._pairings:
                 self._pair(self._pairings[row], mean, displacement)
-            self._look_beside(row, mean, displacement)
+            self._look_off_centre(row, mean, displacement)
 
     def _pair(self, pairing: Pairing, mean: Floats, displacement: Floats) -> None:
         model, first = self.plate.model, self.plate.model.first
@@ -104,9 +104,9 @@ class HalfMotion(SolidMotion):
             *(pairing.contact, start, pairs.facets, pairs.weights, pairs.normals, pairs.gaps)
         )
 
-    def _look_beside(self, row: int, mean: Floats, displacement: Floats) -> None:
+    def _look_off_centre(self, row: int, mean: Floats, displacement: Floats) -> None:
         """Notice a sphere that meets nodes which are no candidates: infinitely far out."""
-        nodes, (centre, radius) = self._beside[row], self._balls[row]
+        nodes, (centre, radius) = self._off_centre[row], self._balls[row]
         points = self.plate.model.elastic[0].mesh.points[nodes] + displacement[nodes]
         if np.any(((points - centre - mean) ** 2).sum(axis=1) < radius**2):
             outer, inner = (

@@ -52,10 +52,10 @@ def _geometry(scene: Scene) -> Iterator[tuple[bool, str]]:
 def _bodies(scene: Scene) -> Iterator[tuple[bool, str]]:
     """Of bodies, damping and friction: whether a scene is refused, and why."""
     outer, fluid, solid = scene.outer, scene.fluid, scene.geometry == "solid"
-    held = isinstance(outer, Bender | Stack)
-    yield held and solid, f"outer.kind is {type(outer).__name__.lower()!r}: {AXISYMMETRIC}"
+    mounted = isinstance(outer, Bender | Stack)
+    yield mounted and solid, f"outer.kind is {type(outer).__name__.lower()!r}: {AXISYMMETRIC}"
     yield (
-        held and scene.end_time is None,
+        mounted and scene.end_time is None,
         "run.end_time is missing; a bender or a stack comes back to the plate for ever, so that it "
         "has to be given",
     )

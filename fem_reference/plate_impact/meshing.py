@@ -84,7 +84,7 @@ def mesh_settings(
             )
     of_spheres = refinement[0], refinement[2]
     # Elements wide enough for the waves take more elements around the contact, too.
-    around = max(1.0, *(asked / MOST_ALONG for asked in of_spheres))
+    around = max(1.0, *(requested / MOST_ALONG for requested in of_spheres))
     per_radius = scene.elements_per_contact_radius * factor * around
     # Along the plate four elements per thickness carry the waves: the incompatible modes bend. The
     # stress at a clamped rim's corners is singular and would make the plate too stiff by the
@@ -395,8 +395,12 @@ def build_system(
         displacement, strike, beam = np.zeros_like(velocity), scene.outer.strike, numbers[0]
         displacement[beam], velocity[beam], tip = strike.displacement, strike.velocity, beam[-1]
     if stack is not None:
-        displacement, touch, rod = np.zeros_like(velocity), stack.touch, numbers[0]
-        displacement[rod], velocity[rod], tip = touch.displacement, touch.velocity, rod[-1]
+        displacement, first_contact, rod = np.zeros_like(velocity), stack.first_contact, numbers[0]
+        displacement[rod], velocity[rod], tip = (
+            first_contact.displacement,
+            first_contact.velocity,
+            rod[-1],
+        )
     return AxisymmetricSystem(
         stiffness=scipy.sparse.block_diag(stiffness, format="csr"),
         points=np.concatenate(points),

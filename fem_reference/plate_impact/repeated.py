@@ -38,7 +38,7 @@ Impact = Callable[[int, Memory | None], tuple[Run, AxisymmetricMotion]]
 """Makes the impact of a number, from 0 on, with what the bodies know of those before."""
 
 
-class Kept:
+class StoredRuns:
     """The finished impacts of a mesh, in a file that survives a killed run.
 
     Args:
@@ -119,7 +119,7 @@ def has_shaken_down(run: Run) -> bool:
 def strike(
     series: Series | None,
     impact: Impact,
-    kept: Kept,
+    stored: StoredRuns,
     accepted: Callable[[Run, AxisymmetricMotion], bool],
     count: int | None,
 ) -> Struck:
@@ -128,11 +128,11 @@ def strike(
     Args:
         series: None: a single one.
         impact: makes one.
-        kept: those an earlier start has finished, and where finished ones go.
+        stored: those an earlier start has finished, and where finished ones go.
         accepted: whether the mesh is good enough for an impact.
         count: of the impacts; None: until nothing yields any more.
     """
-    runs, memory = kept.load()
+    runs, memory = stored.load()
     most = count or (series.impacts if series else 1)
     while True:
         run, motion = impact(len(runs), memory)
@@ -141,4 +141,4 @@ def strike(
         if done or motion.dents is None or series is None or not accepted(run, motion):
             return Struck(runs, motion)
         memory = motion.dents.memory(series.sphere_spot == "fresh")
-        kept.save(runs, memory)
+        stored.save(runs, memory)

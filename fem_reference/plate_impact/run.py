@@ -90,7 +90,7 @@ def integrate(
 def _result(motion: Motion, scene: Scene, duration: float, course: Course) -> Run:
     loop, share = motion.loop, motion.share
     problem = loop.problem
-    energies, in_contact = energies_of(loop), loop.touching
+    energies, in_contact = energies_of(loop), loop.is_in_contact
     work = sum(record.work for record in motion.records)
     stored = sum(record.stored for record in motion.records)
     velocities, momenta = motion.velocities(), motion.momenta()

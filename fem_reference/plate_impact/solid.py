@@ -154,7 +154,7 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
     estimate = estimate_contact(scene)
     wavelengths = shortest_wavelengths(scene, estimate.duration)
     model, motion = (plate_model, SolidMotion) if scene.centred else (half_model, HalfMotion)
-    asked = scene.elements_per_contact_radius * factor
+    requested = scene.elements_per_contact_radius * factor
     radii = (estimate.outer_radius, estimate.inner_radius)
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
@@ -173,7 +173,7 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         found = _elements_per_radius(scene, plate, run)
         reach = max(contact.outermost_radius for contact in run.contacts)
         inside = reach < 0.95 * plate.zone
-        if min(found) >= ACCEPTED_SHARE * asked and inside:
+        if min(found) >= ACCEPTED_SHARE * requested and inside:
             per_wave, wavelength = _per_wavelength(plate, wavelengths)
             return Solution(
                 **vars(done),
@@ -191,7 +191,7 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         )
         if comm.rank == 0:
             print(
-                f"mesh {attempt}: {min(found):.3g} elements per contact radius, {asked:.3g} "
+                f"mesh {attempt}: {min(found):.3g} elements per contact radius, {requested:.3g} "
                 "asked; meshing again with the radii found",
                 file=sys.stderr,
             )
@@ -203,5 +203,5 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         )
     raise SolverError(
         f"after {MOST_MESHES} meshes there are still only {min(found):.3g} elements per contact "
-        f"radius, {asked:.3g} are asked for"
+        f"radius, {requested:.3g} are asked for"
     )

@@ -120,7 +120,7 @@ class Suitability:
     """Whether a mesh suits what happened on it."""
 
     resolution: Resolution
-    asked: float
+    requested: float
     """Elements per contact radius."""
     zone_left: bool
     """Whether nodes of the contact zone were never touched."""
@@ -135,7 +135,7 @@ class Suitability:
     @property
     def accepted(self) -> bool:
         """Whether it does."""
-        return self.least >= ACCEPTED_SHARE * self.asked and self.zone_left and self.reach_left
+        return self.least >= ACCEPTED_SHARE * self.requested and self.zone_left and self.reach_left
 
     def radii(self, size: float, before: tuple[float, float]) -> tuple[float, float]:
         """Contact radii for the next mesh, after one with elements of ``size`` (m)."""
@@ -151,4 +151,4 @@ class Suitability:
     def __str__(self) -> str:
         """What a message says."""
         beyond = "" if self.reach_left else " and yielding beyond its zone"
-        return f"{self.least:.3g} elements per contact radius, {self.asked:.3g} asked{beyond}"
+        return f"{self.least:.3g} elements per contact radius, {self.requested:.3g} asked{beyond}"

@@ -153,8 +153,8 @@ def _cut_out(scene: SeatScene, together: bool) -> int:
     for group in [tools] if together else [[tool] for tool in tools]:
         cut, _ = occ.cut(cut, group)
     # A node where each tip touches first: otherwise the force peaks scatter with the nodes' places.
-    touched = [(0, occ.addPoint(x, 0.0, 0.0)) for x in scene.actuator.tip_positions]
-    whole, _ = occ.fragment(cut, touched)
+    tips = [(0, occ.addPoint(x, 0.0, 0.0)) for x in scene.actuator.tip_positions]
+    whole, _ = occ.fragment(cut, tips)
     return sum(dimension == 3 for dimension, _ in whole)
 
 

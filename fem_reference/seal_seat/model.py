@@ -93,7 +93,7 @@ def cone_nodes(mesh: TetMesh, facets: Ints, ring: Ring, reach: float) -> tuple[I
     return facets[cone], nodal_areas(mesh, facets[cone])
 
 
-def touching_facets(scene: SeatScene, mesh: TetMesh) -> Ints:
+def contact_facets(scene: SeatScene, mesh: TetMesh) -> Ints:
     """Facets of the sphere's surface that the cone can meet."""
     ring = scene.ring()
     facets = surface(mesh)
@@ -182,7 +182,7 @@ def seat_model(scene: SeatScene, mesh: TetMesh, sphere_mesh: TetMesh | None = No
         density = FRACTION * scene.sphere_mass / sphere_mesh.volume()
         material = replace(scene.sphere_material, density=density)
         elastic.append(ElasticBody(sphere_mesh, material, symmetry_plane(sphere_mesh, 1)))
-        sphere_facets = touching_facets(scene, sphere_mesh)
+        sphere_facets = contact_facets(scene, sphere_mesh)
         still = np.zeros_like(sphere_mesh.points)
         for name, patch in flanks:
             pairs = sphere_pairs(scene.ball, sphere_mesh, sphere_facets, places[patch.nodes], still)

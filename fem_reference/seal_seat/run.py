@@ -226,7 +226,7 @@ def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows:
             _contact(loop, seat, (LEFT, RIGHT), rows[:, 4:6], course.interval),
             _contact(loop, seat, tuple(seat.tips), rows[:, 8], course.interval),
         ),
-        in_contact_at_end=loop.touching,
+        in_contact_at_end=loop.is_in_contact,
         time_step=loop.dt,
         critical_time_step=course.critical_time_step,
         steps=problem.state.step,

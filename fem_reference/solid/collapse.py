@@ -22,11 +22,11 @@ def _volume(points: Floats, corners: Ints) -> float:
     return float(np.einsum("ij,ij->", np.cross(b - a, c - a), d - a)) / 6.0
 
 
-def _without(corners: Ints, gone: int, kept: int) -> Ints:
-    """The elements when node ``gone`` becomes ``kept``; those that had both are omitted."""
-    both = (corners == gone).any(axis=1) & (corners == kept).any(axis=1)
-    kept_elements: Ints = np.where(corners == gone, kept, corners)[~both]
-    return kept_elements
+def _without(corners: Ints, gone: int, remaining: int) -> Ints:
+    """The elements when node ``gone`` becomes ``remaining``; those that had both are omitted."""
+    both = (corners == gone).any(axis=1) & (corners == remaining).any(axis=1)
+    remaining_elements: Ints = np.where(corners == gone, remaining, corners)[~both]
+    return remaining_elements
 
 
 def collapse_short_edges(points: Floats, corners: Ints) -> tuple[Floats, Ints]:
@@ -43,12 +43,12 @@ def collapse_short_edges(points: Floats, corners: Ints) -> tuple[Floats, Ints]:
         best: tuple[float, Ints] | None = None
         for element in corners[bad]:
             pairs = [(a, b) for a in element for b in element if a != b]
-            for gone, kept in pairs:
+            for gone, remaining in pairs:
                 around = corners[(corners == gone).any(axis=1)]
-                length = np.linalg.norm(points[gone] - points[kept])
+                length = np.linalg.norm(points[gone] - points[remaining])
                 if length > SHORT * edge_lengths(points, around).mean():
                     continue
-                merged = _without(corners, gone, kept)
+                merged = _without(corners, gone, remaining)
                 least = float(qualities(points, merged).min())
                 same = abs(_volume(points, merged) / volume - 1.0) <= LARGEST_CHANGE
                 if same and least > quality.min() and (best is None or least > best[0]):

@@ -18,7 +18,7 @@ from ..common.errors import SolverError
 from ..common.fenicsx import TetDomain, petsc_rows
 from ..common.fields import Fields
 from ..explicit.frames import Recorder
-from .mesh import TetMesh, scatter_sum, volumes
+from .mesh import TetMesh, nodal_sum, volumes
 from .model import Model
 
 STRESS_COMPONENTS = (
@@ -44,7 +44,7 @@ def lumped_mass(mesh: TetMesh, density: float) -> Floats:
     corner, midside = LUMPED_SHARES[mesh.order]
     shares = np.array([corner] * 4 + [midside] * (mesh.cells.shape[1] - 4))
     masses = density * volumes(mesh.points, mesh.corners)[:, None] * shares
-    return scatter_sum(mesh.cells, masses, mesh.points.shape[0])
+    return nodal_sum(mesh.cells, masses, mesh.points.shape[0])
 
 
 def _stress(u: Any, lame: Any, shear: Any) -> Any:

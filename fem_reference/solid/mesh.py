@@ -118,7 +118,7 @@ def surface(mesh: TetMesh) -> Ints:
     return np.asarray(faces[np.sort(index[count == 1])])
 
 
-def scatter_sum(nodes: Ints, values: Floats, count: int) -> Floats:
+def nodal_sum(nodes: Ints, values: Floats, count: int) -> Floats:
     """(count,) sums of the values that belong to each node."""
     weights = np.broadcast_to(values, nodes.shape).ravel()
     return np.asarray(np.bincount(nodes.ravel(), weights, count), dtype=np.float64)

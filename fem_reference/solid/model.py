@@ -14,7 +14,7 @@ from ..common.arrays import Floats, Ints
 from ..common.bodies import Material
 from ..common.errors import SolverError
 from ..explicit.contact import Contact, RigidBody
-from .mesh import FACE_EDGES, TetMesh, scatter_sum, shape_functions
+from .mesh import FACE_EDGES, TetMesh, nodal_sum, shape_functions
 
 
 @dataclass(frozen=True)
@@ -110,4 +110,4 @@ def nodal_areas(mesh: TetMesh, facets: Ints) -> Floats:
     corner, midside = (1.0 / 3.0, 0.0) if mesh.order == 1 else (1.0 / 19.0, 16.0 / 57.0)
     shares = np.array([corner] * 3 + [midside] * (len(FACE_EDGES) * (mesh.order - 1)))
     count = mesh.points.shape[0]
-    return scatter_sum(facets, area[:, None] * shares, count)
+    return nodal_sum(facets, area[:, None] * shares, count)

@@ -14,7 +14,7 @@ from ..explicit.levels import least_at_nodes
 from ..explicit.loop import Loop, SerialLoop
 from ..explicit.parallel import ParallelLoop
 from ..explicit.partition import owners
-from ..explicit.problem import touching
+from ..explicit.problem import contact_nodes
 from ..explicit.stiffness import worthwhile
 from .elasticity import lumped_mass
 from .elements import element_time_steps, tetrahedra
@@ -39,7 +39,7 @@ class SolidSystem:
         self.velocity = np.concatenate(
             [np.tile(body.velocity, (body.mesh.points.shape[0], 1)) for body in bodies]
         )
-        self.held = np.ones(self.mass.size, dtype=bool)
+        self.supported = np.ones(self.mass.size, dtype=bool)
         self.element_nodes = np.concatenate(
             [body.mesh.cells + offset for body, offset in zip(bodies, self.first, strict=False)]
         )
@@ -60,7 +60,7 @@ class SolidSystem:
         """(m,) process of each element."""
         if self.comm.size == 1:
             return np.zeros(self.element_nodes.shape[0], dtype=np.int64)
-        near = touching(self.contacts, self.first)
+        near = contact_nodes(self.contacts, self.first)
         steps = self.element_time_steps()
         return owners(self.points, self.element_nodes, steps, near, self.comm.size)
 
@@ -73,9 +73,9 @@ class SolidSystem:
 
     def operator(self) -> Tetrahedra:
         """K of this process' elements."""
-        kept = np.concatenate([self.owned, self.ghosts])
+        local_nodes = np.concatenate([self.owned, self.ghosts])
         number = np.empty(self.mass.size, dtype=np.int64)
-        number[kept] = np.arange(kept.size)
+        number[local_nodes] = np.arange(local_nodes.size)
         bodies = np.searchsorted(self._first_element(), self._mine, side="right") - 1
         materials = [body.material for body in self.model.elastic]
         lame, shear = (

@@ -97,7 +97,7 @@ def test_wet_frequencies_of_a_thin_plate(edge: str) -> None:
     assert wet_frequencies(plate, mesh, 4, 1e-9) == pytest.approx(dry, rel=1e-9)
 
 
-def test_command_gives_the_ratio_a_scene_asks_for(tmp_path: Path) -> None:
+def test_command_gives_the_ratio_of_a_scene(tmp_path: Path) -> None:
     scene = tmp_path / "scene.json"
     scene.write_text(json.dumps(document(fluid=WATER)), encoding="utf-8")
     arguments = ("modes", "--count", "2", "--wet", "--scene", str(scene))

@@ -125,7 +125,7 @@ def impact(**changes: Any) -> Scene:
     return parse_scene(document(**{**bodies, **changes}))
 
 
-def test_what_a_bender_needs_is_asked_for() -> None:
+def test_a_bender_without_its_required_keys_is_refused() -> None:
     assert impact().outer.tip_radius == 4e-3
     for change, field in (
         ({"run__end_time": None}, "run.end_time"),
@@ -139,7 +139,7 @@ def test_what_a_bender_needs_is_asked_for() -> None:
 
 
 @pytest.mark.parametrize("most_levels", [1, 4])
-def test_ledger_of_an_impact(most_levels: int) -> None:
+def test_balance_of_an_impact(most_levels: int) -> None:
     """Beam, plate and sphere: energy of all, momentum of all with both supports."""
     scene = impact()
     system, duration = make_system(scene)

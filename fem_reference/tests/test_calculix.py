@@ -37,9 +37,11 @@ from .conftest import STEEL, document, solve_once
 
 def small(**changes: Any) -> Scene:
     """A small plate hit hard: about 60 steps of some hundred nodes."""
-    asked = {"geometry": "axisymmetric", "elements_per_contact_radius": 8}
+    requested = {"geometry": "axisymmetric", "elements_per_contact_radius": 8}
     sizes = {"plate__radius": 0.012, "outer__radius": 0.005, "inner__radius": 0.005}
-    return parse_scene(document(**{"reference": asked, **sizes, "outer__speed": 2.0, **changes}))
+    return parse_scene(
+        document(**{"reference": requested, **sizes, "outer__speed": 2.0, **changes})
+    )
 
 
 def solved(scene: Scene, folder: Path, factor: float) -> calculix.Solution:
@@ -81,7 +83,7 @@ def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
 
 @needs_calculix
 @pytest.mark.parametrize(("edge", "eigenvalue"), [("clamped", 10.2158), ("free", 9.0031)])
-def test_a_thin_plate_vibrates_as_kirchhoff_says(
+def test_a_thin_plate_vibrates_as_in_kirchhoffs_theory(
     tmp_path: Path, edge: Edge, eigenvalue: float
 ) -> None:
     """Lowest axisymmetric mode, omega R^2 sqrt(rho h / D) of a Kirchhoff plate with nu = 0.3."""
@@ -90,8 +92,8 @@ def test_a_thin_plate_vibrates_as_kirchhoff_says(
     mesh = mesh_plate(plate, MeshSettings(0.0008, 1, 0.0008, 0.0004, 1.0, 1.0))
     plane = quadratic(mesh)
     rim = np.flatnonzero(plane.points[:, 0] > plate.radius * (1.0 - 1e-9))
-    held = rim if edge == "clamped" else np.zeros(0, dtype=np.int64)
-    deck = Deck([Part("PLATE", wedge(plane, 1, 1), steel, held, held)])
+    fixed = rim if edge == "clamped" else np.zeros(0, dtype=np.int64)
+    deck = Deck([Part("PLATE", wedge(plane, 1, 1), steel, fixed, fixed)])
     ran = program.run(deck.modes(2), tmp_path / "job", lambda _: False)
     found = MILLI * frequencies(ran)[1 if edge == "free" else 0]
     exact = eigenvalue / (2.0 * math.pi * plate.radius**2)
@@ -152,8 +154,8 @@ def test_the_momentum_of_a_free_plate_and_both_spheres_lasts(tmp_path: Path) -> 
         ({"reference__geometry": "solid"}, "reference.geometry is 'solid'"),
     ],
 )  # fmt: skip
-def test_what_the_deck_does_not_describe_is_refused(changes: dict[str, Any], told: str) -> None:
-    with pytest.raises(SceneError, match=re.escape(told)):
+def test_what_the_deck_does_not_describe_is_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError, match=re.escape(message)):
         require_supported(parse_scene(document(**changes)), Options(solver="calculix"))
 
 
@@ -184,12 +186,12 @@ def pretended(folder: Path, monkeypatch: pytest.MonkeyPatch, does: str) -> None:
         ("exit 1", "status 1: it did not say why"),
     ],
 )
-def test_a_run_that_fails_says_why(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, does: str, told: str
+def test_a_run_that_fails_states_the_reason(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, does: str, message: str
 ) -> None:
     pretended(tmp_path, monkeypatch, does)
     assert program.version() == "2.20"
-    with pytest.raises(SolverError, match=told):
+    with pytest.raises(SolverError, match=message):
         program.run("", tmp_path / "job", lambda _: False)
 
 
@@ -202,7 +204,7 @@ def test_a_run_that_prints_no_more_is_ended(
         program.run("", tmp_path / "job", lambda _: False)
 
 
-def test_a_missing_or_old_program_is_told_of(
+def test_a_missing_or_old_program_is_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(program.VARIABLE, str(tmp_path / "nowhere"))

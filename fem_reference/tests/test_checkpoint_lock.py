@@ -16,17 +16,17 @@ ALONE: Any = SimpleNamespace(rank=0, barrier=lambda: None)
 def test_the_second_run_waits_until_the_first_has_gone(tmp_path: Path) -> None:
     """It says so, and enters only after the first has left, even if that one failed."""
     folder = tmp_path / "scene" / ".checkpoint-coarse"
-    told, order = threading.Event(), []
+    waiting, order = threading.Event(), []
 
     def second() -> None:
-        with exclusive(folder, ALONE, told.set):
+        with exclusive(folder, ALONE, waiting.set):
             order.append("second")
 
     thread = threading.Thread(target=second)
     try:
         with exclusive(folder, ALONE, lambda: order.append("first had to wait")):
             thread.start()
-            assert told.wait(10.0)
+            assert waiting.wait(10.0)
             order.append("first")
             raise RuntimeError
     except RuntimeError:
@@ -37,12 +37,12 @@ def test_the_second_run_waits_until_the_first_has_gone(tmp_path: Path) -> None:
 
 
 def test_runs_of_two_solutions_do_not_wait_for_each_other(tmp_path: Path) -> None:
-    told: list[str] = []
+    waiting: list[str] = []
     with (
-        exclusive(tmp_path / ".checkpoint-a", ALONE, lambda: told.append("a")),
-        exclusive(tmp_path / ".checkpoint-b", ALONE, lambda: told.append("b")),
+        exclusive(tmp_path / ".checkpoint-a", ALONE, lambda: waiting.append("a")),
+        exclusive(tmp_path / ".checkpoint-b", ALONE, lambda: waiting.append("b")),
     ):
-        assert told == []
+        assert waiting == []
 
 
 def test_a_folder_that_is_removed_and_made_again_is_locked_again(tmp_path: Path) -> None:

@@ -60,7 +60,7 @@ def test_tip_is_symmetric_and_stores_energy() -> None:
     assert np.linalg.eigvalsh(found).min() > 0.0
 
 
-def test_tip_yields_to_hertz_pressure_as_the_half_space() -> None:
+def test_tip_under_hertz_pressure_deforms_as_the_half_space() -> None:
     """Hertz 1882: (pi p0 / (4 E' a)) (2 a^2 - r^2) under the pressure p0 sqrt(1 - (r/a)^2)."""
     errors = []
     for nodes in (11, 21, 41):
@@ -77,7 +77,7 @@ def test_tip_yields_to_hertz_pressure_as_the_half_space() -> None:
     assert errors[2] < 0.6 * errors[1] < 0.36 * errors[0]
 
 
-def test_tip_yields_to_a_flat_punch_as_the_half_space() -> None:
+def test_tip_under_a_flat_punch_deforms_as_the_half_space() -> None:
     """A rigid punch of radius a takes the force 2 E' a per displacement (Boussinesq 1885)."""
     errors = []
     for nodes in (11, 21, 41):

@@ -52,7 +52,7 @@ def test_free_mode_decays_as_its_closed_form(mode: int, levels: int) -> None:
         place = weighted.T @ loop.u[rows]
         assert place[mode] == pytest.approx(exact, abs=2e-3 / omega)
         assert np.abs(np.delete(place, mode) * np.delete(modes.frequencies, mode)).max() < 1e-3
-    assert not loop.touching
+    assert not loop.is_in_contact
     after = energies_of(loop).elastic[PLATE]
     # The kinetic part decays between losses only on the average over a period.
     assert after / before == pytest.approx(math.exp(-2.0 * RATIO * omega * now), rel=0.05)
@@ -60,7 +60,7 @@ def test_free_mode_decays_as_its_closed_form(mode: int, levels: int) -> None:
 
 
 @pytest.mark.parametrize("edge", ["clamped", "free"])
-def test_ledgers_close(edge: str) -> None:
+def test_balances_close(edge: str) -> None:
     scene = parse_scene(document(plate__edge=edge, plate__damping_ratio=RATIO))
     system, duration = make_system(scene)
     many = integrate(system, scene, duration)

@@ -33,7 +33,7 @@ from fem_reference.plate_impact.scene import Scene, parse_scene
 from .conftest import document, integrate, make_loop, make_system
 
 
-def test_ledger_of_momentum_and_energy(run: Run, system: AxisymmetricSystem) -> None:
+def test_balance_of_momentum_and_energy(run: Run, system: AxisymmetricSystem) -> None:
     """Momentum to round-off, energy to what the interfaces of the levels exchange."""
     loop = make_loop(system, run.time_step, MOST_LEVELS)
     assert len(loop.levels) > 2
@@ -71,7 +71,7 @@ def test_spheres_from_both_sides_rebound_as_mirror_images() -> None:
     assert run.rows[0, 6] == pytest.approx(0.55, rel=1e-2)
 
 
-def test_body_that_recedes_is_not_touched() -> None:
+def test_a_receding_body_has_no_contact() -> None:
     scene = parse_scene(document(inner__speed=-2.0, reference__elements_per_contact_radius=3))
     system, duration = make_system(scene)
     run = integrate(system, scene, duration)
@@ -218,7 +218,7 @@ def test_compiled_product_is_the_matrix_product(system: AxisymmetricSystem) -> N
         {"plate__damping_ratio": 0.03},
     ],
 )
-def test_nothing_touches_after_the_end_of_the_run(changes: dict[str, object]) -> None:
+def test_no_contact_after_the_end_of_the_run(changes: dict[str, object]) -> None:
     """The run ends by itself; one twice as long changes none of its results."""
     scene = parse_scene(document(reference__elements_per_contact_radius=3, **changes))
     system, duration = make_system(scene)
@@ -244,14 +244,14 @@ def test_run_cut_short_says_so(system: AxisymmetricSystem, scene: Scene, duratio
 def test_field_is_the_state_at_its_time(
     system: AxisymmetricSystem, scene: Scene, duration: float, tmp_path: Path
 ) -> None:
-    kept: list[Frames] = []
+    recorded: list[Frames] = []
 
     def fields(interval: float) -> Frames:
-        kept.append(Frames(tmp_path, 0, (0.0, 1e-5), interval))
-        return kept[-1]
+        recorded.append(Frames(tmp_path, 0, (0.0, 1e-5), interval))
+        return recorded[-1]
 
     cut = integrate(system, scene, duration, end_time=2e-5, fields=fields)
-    (start, still), (instant, moved) = kept[0].frames()
+    (start, still), (instant, moved) = recorded[0].frames()
     assert start == 0.0 and not still.any()
     assert instant == pytest.approx(1e-5, abs=float(cut.times[1]))
     index = int(np.argmin(np.abs(cut.times - instant)))

@@ -29,7 +29,7 @@ def impact(factor: float = 0.5, **changes: Any) -> tuple[Scene, Run]:
     return scene, run
 
 
-def assert_ledgers_close(run: Run) -> None:
+def assert_balances_close(run: Run) -> None:
     assert run.momentum_residual < 1e-8
     assert run.energy_residual < 1e-4
 
@@ -47,7 +47,7 @@ def test_a_hardly_compressible_sphere_is_hertz() -> None:
         inner__gap=1e-3,
         run__end_time=7e-4,
     )
-    assert_ledgers_close(run)
+    assert_balances_close(run)
     stiffness = hertz_stiffness(
         effective_modulus(scene.outer.material, scene.plate.material), scene.outer.tip_radius
     )
@@ -82,10 +82,10 @@ def test_a_hardly_compressible_plate_keeps_its_frequency() -> None:
     ],
     ids=["thin", "heavy on light", "light on heavy", "apart at the start", "rubber plate"],
 )  # fmt: skip
-def test_ledgers_close_and_no_contact_pulls(changes: dict[str, Any]) -> None:
+def test_balances_close_and_no_contact_pulls(changes: dict[str, Any]) -> None:
     scene, run = impact(**changes)
     assert not run.in_contact_at_end
-    assert_ledgers_close(run)
+    assert_balances_close(run)
     for contact in run.contacts:
         assert contact.force_peak >= 0.0
         assert contact.impulse >= 0.0

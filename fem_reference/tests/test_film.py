@@ -204,7 +204,7 @@ def runs() -> dict[str, tuple[Scene, Run]]:
 
 
 @pytest.mark.parametrize("name", ["sphere", "compact", "all"])
-def test_ledgers_close(runs: dict[str, tuple[Scene, Run]], name: str) -> None:
+def test_balances_close(runs: dict[str, tuple[Scene, Run]], name: str) -> None:
     _, run = runs[name]
     assert run.energy_residual < 1e-9
     assert run.momentum_residual < 1e-8
@@ -213,7 +213,7 @@ def test_ledgers_close(runs: dict[str, tuple[Scene, Run]], name: str) -> None:
     assert (run.losses.drag > 0.0) == (run.losses.plate_damping > 0.0) == (name == "all")
 
 
-def test_impact_in_water_beside_the_reduced_model(runs: dict[str, tuple[Scene, Run]]) -> None:
+def test_impact_in_water_agrees_with_the_reduced_model(runs: dict[str, tuple[Scene, Run]]) -> None:
     """Model C, whose film sees bodies without dents: 0.7550, 7.570 N and 6.623 N, lost 0.250 uJ."""
     dry, wet, tip = (of_run(*runs[name]) for name in ("dry", "sphere", "compact"))
     assert wet["efficiency"] == pytest.approx(0.7550, abs=0.006)

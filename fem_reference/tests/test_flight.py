@@ -22,14 +22,14 @@ def yard(restitution: float, friction: float) -> Case:
     return Case((FLOOR,), 1.5, 0.11, (0.0, -DOWN), (0.0, 0.0), restitution, friction)
 
 
-def test_a_throw_touches_where_its_parabola_does() -> None:
+def test_a_throw_has_its_contact_where_its_parabola_has() -> None:
     sphere = Sphere(yard(0.5, 0.0))
     sphere.start((0.0, 2.5), (0.7, 0.9), 0.0)
-    touched = sphere.fly(40.0).first_touch
-    assert touched is not None
+    contact = sphere.fly(40.0).first_contact
+    assert contact is not None
     # 1 mm above the floor
     time = (0.9 + math.sqrt(0.9**2 + 2 * DOWN * 1.0)) / DOWN
-    assert touched == pytest.approx((time, 0.7 * time, 1.5), abs=1e-8)
+    assert contact == pytest.approx((time, 0.7 * time, 1.5), abs=1e-8)
 
 
 def test_a_spring_turns_the_sphere_after_half_a_period() -> None:
@@ -44,7 +44,7 @@ def test_a_spring_turns_the_sphere_after_half_a_period() -> None:
 
 @pytest.mark.parametrize("restitution", [0.3, 0.7])
 @pytest.mark.parametrize("friction", [0.05, 0.5])
-def test_a_touch_has_newton_s_and_coulomb_s_impulses(restitution: float, friction: float) -> None:
+def test_a_contact_has_newton_s_and_coulomb_s_impulses(restitution: float, friction: float) -> None:
     case = replace(yard(restitution, friction), gravity=(0.0, 0.0))
     rebounds = []
     for part in (0.05, 0.26, 0.5, 0.75, 0.95):

@@ -55,11 +55,11 @@ def test_every_pair_obeys_coulombs_law() -> None:
         velocity = loop.v - loop.dt * loop.inverse * loop.product(loop.u)
         loop.advance(1)
         change = (loop.v - velocity).reshape(-1, 2)[pairs.candidates]
-        held = loop.inverse.reshape(-1, 2)[pairs.candidates]
-        normal = change[:, 1] / (loop.dt * held[:, 1])
-        off_axis = held[:, 0] > 0.0
+        inverse = loop.inverse.reshape(-1, 2)[pairs.candidates]
+        normal = change[:, 1] / (loop.dt * inverse[:, 1])
+        off_axis = inverse[:, 0] > 0.0
         shear = np.zeros_like(normal)
-        shear[off_axis] = change[off_axis, 0] / (loop.dt * held[off_axis, 0])
+        shear[off_axis] = change[off_axis, 0] / (loop.dt * inverse[off_axis, 0])
         bound = friction * normal
         sliding = loop.v[2 * pairs.candidates] - loop.v[2 * pairs.opposite]
         assert normal.min() >= -1e-9 * normal.max()

@@ -58,16 +58,16 @@ def level_parts(
     stands_for = np.arange(size)
     for pairs, count in zip(system.matched, closed, strict=True):
         stands_for[2 * pairs.candidates[:count] + 1] = 2 * pairs.opposite[:count] + 1
-    kept = np.flatnonzero((stands_for == np.arange(size)) & (system.inverse_mass > 0.0))
+    independent = np.flatnonzero((stands_for == np.arange(size)) & (system.inverse_mass > 0.0))
     number = np.full(size, -1)
-    number[kept] = np.arange(kept.size)
+    number[independent] = np.arange(independent.size)
     rows = np.flatnonzero(number[stands_for] >= 0)
     chosen = scipy.sparse.csr_matrix(
-        (np.ones(rows.size), (rows, number[stands_for[rows]])), shape=(size, kept.size)
+        (np.ones(rows.size), (rows, number[stands_for[rows]])), shape=(size, independent.size)
     )
     mass = chosen.T @ np.repeat(system.mass, 2)
     parts = [chosen.T @ system.part(level == k) @ chosen for k in range(int(level.max()) + 1)]
-    return parts, mass, node[kept // 2], kept
+    return parts, mass, node[independent // 2], independent
 
 
 def long_step(
@@ -120,14 +120,14 @@ def test_levels_up_to_the_critical_step_resonate(
 
 def test_the_long_step_is_that_of_the_compiled_loop(system: AxisymmetricSystem) -> None:
     step = 0.9 * critical_time_step(system)
-    parts, mass, level, kept = level_parts(system, step, OPEN)
+    parts, mass, level, independent = level_parts(system, step, OPEN)
     loop = make_loop(system, step, MOST_LEVELS)
-    u = np.random.default_rng(1).standard_normal(kept.size)
+    u = np.random.default_rng(1).standard_normal(independent.size)
     start = sum(0.5 * 2**k * step * (part @ u) for k, part in enumerate(parts)) / mass
-    loop.u[kept], loop.v[kept] = u, start
+    loop.u[independent], loop.v[independent] = u, start
     loop.drift(2 ** (len(parts) - 1))
     expected = long_step(parts, mass, level, step) @ u
-    assert np.abs(loop.u[kept] - expected).max() < 1e-11 * np.abs(expected).max()
+    assert np.abs(loop.u[independent] - expected).max() < 1e-11 * np.abs(expected).max()
 
 
 def test_no_vibration_of_a_solid_grows() -> None:

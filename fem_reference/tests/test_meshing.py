@@ -78,7 +78,7 @@ def test_inner_sphere_stands_off_by_its_gap() -> None:
     assert mesh.inner.points[:, 1].max() == pytest.approx(-0.001 - 2e-5, abs=1e-15)
 
 
-def test_contact_zone_has_the_elements_asked_for(scene: Scene, mesh: ImpactMesh) -> None:
+def test_contact_zone_has_the_requested_elements(scene: Scene, mesh: ImpactMesh) -> None:
     smallest = min(estimate_contact(scene).inner_radius, estimate_contact(scene).outer_radius)
     size = mesh.settings.contact_element
     assert smallest / size == pytest.approx(4.0, rel=1e-12)
@@ -179,8 +179,8 @@ def test_elements_follow_the_waves_in_every_body(seed: int) -> None:
     scene = draw(seed)
     estimate = estimate_contact(scene)
     radii = (estimate.outer_radius, estimate.inner_radius)
-    asked = mesh_impact(scene, mesh_settings(scene, *radii, 2.0 / 3.0))
-    least, _ = min(per_wavelength(scene, asked, estimate.duration))
+    requested = mesh_impact(scene, mesh_settings(scene, *radii, 2.0 / 3.0))
+    least, _ = min(per_wavelength(scene, requested, estimate.duration))
     assert least < 0.5 * LEAST_ELEMENTS_PER_WAVELENGTH
     mesh, refinement = refined(scene, radii, 2.0 / 3.0, estimate.duration)
     found = per_wavelength(scene, mesh, estimate.duration)
@@ -190,12 +190,12 @@ def test_elements_follow_the_waves_in_every_body(seed: int) -> None:
     few = [number > 1.0 for number in refinement]
     assert few == [
         count < LEAST_ELEMENTS_PER_WAVELENGTH
-        for count, _ in per_wavelength(scene, asked, estimate.duration)
+        for count, _ in per_wavelength(scene, requested, estimate.duration)
     ]
     assert mesh.min_quality > 0.4
 
 
-def test_a_mesh_that_suits_the_waves_is_the_one_asked_for(scene: Scene, mesh: ImpactMesh) -> None:
+def test_a_mesh_that_suits_the_waves_is_the_requested_one(scene: Scene, mesh: ImpactMesh) -> None:
     estimate = estimate_contact(scene)
     radii = (estimate.outer_radius, estimate.inner_radius)
     same, refinement = refined(scene, radii, 1.0, estimate.duration)

@@ -174,15 +174,15 @@ def rolled(scene: Scene, inertia: float) -> float:
     tangential = 8.0 * material.shear_modulus / (2.0 - material.poisson_ratio)
     step, lighter = 2e-9, 1.0 + 2.5 / inertia
     z, v, d, w = 0.0, scene.normal_speed, 0.0, scene.tangential_velocity
-    radii, held = [0.0], [0.0]
+    radii, stuck = [0.0], [0.0]
     start = w
     while True:
         a = math.sqrt(max(z, 0.0) * ball.tip_radius)
         if a > radii[-1]:
             radii.append(a)
-            held.append(d)
+            stuck.append(d)
         inside = np.searchsorted(radii, a, side="right")
-        stretched = d - np.array(held[:inside])
+        stretched = d - np.array(stuck[:inside])
         force = tangential * float(trapezoid(stretched, radii[:inside]))
         v -= step * normal * max(z, 0.0) ** 1.5 / mass
         w -= step * lighter * force / mass
@@ -290,7 +290,7 @@ def modal_sum(scene: Scene, end: float) -> tuple[float, float]:
     return float(path.y[1, -1]), max(force(y) for y in path.y.T)
 
 
-def test_a_plate_struck_beside_its_centre_answers_as_the_sum_of_its_modes() -> None:
+def test_a_plate_struck_off_its_centre_is_the_sum_of_its_modes() -> None:
     end = 6e-5
     found = strike(
         oblique(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fem_reference.axisymmetric.elasticity import scatter
+from fem_reference.axisymmetric.elasticity import global_matrix
 from fem_reference.axisymmetric.plastic import Box, mean_dilatation, plasticity, point_gradients
 from fem_reference.axisymmetric.system import AxisymmetricSystem
 from fem_reference.common.arrays import Floats
@@ -45,7 +45,7 @@ def inner_displacement(count: int, stiffness_of: Any) -> float:
     material = Material("rubber", 1.0, 0.4999, 1.0)
     points, quads = rectangle(1.0, 1.0, 0.1, count, 1)
     gradients, weights = point_gradients(points[quads])
-    stiffness = scatter(quads, stiffness_of(gradients, weights, material), points.shape[0])
+    stiffness = global_matrix(quads, stiffness_of(gradients, weights, material), points.shape[0])
     load = np.zeros(2 * points.shape[0])
     load[0 :: 2 * (count + 1)] = 0.5 * 2.0 * math.pi * 0.1
     # plane strain: only u_r is free
@@ -81,7 +81,7 @@ def pulled(law: Yielding, time_step: float) -> tuple[PlasticState, Material]:
     points, quads = rectangle(0.01, 1e-4, 1e-4, 1, 1)
     made = plasticity(quads, points, material, Box(np.array([True]), np.array([0])))
     system = AxisymmetricSystem(
-        stiffness=scatter(quads, np.zeros((1, 8, 8)), 4),
+        stiffness=global_matrix(quads, np.zeros((1, 8, 8)), 4),
         points=points,
         mass=np.ones(4),
         inverse_mass=np.zeros(8),
@@ -163,7 +163,7 @@ def test_energy_of_an_impact_that_yields_is_accounted_for() -> None:
 
 
 @pytest.mark.parametrize("change", [{"plate__damping_ratio": 0.04}, {"friction": 0.3}])
-def test_ledger_closes_with_yielding_beside_another_loss(change: dict[str, float]) -> None:
+def test_balance_closes_with_plasticity_and_another_loss(change: dict[str, float]) -> None:
     run, motion, _ = impact(1, **STEELS, **change, reference__elements_per_contact_radius=3)
     assert run.energy_residual < 1e-6
     assert run.momentum_residual < 1e-9

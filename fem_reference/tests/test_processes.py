@@ -86,14 +86,14 @@ def test_a_run_started_by_hand_is_left_alone() -> None:
         f"import os; os.environ.pop({PARENT!r}, None); from fem_reference.common.parent import *; "
     )
     read = "import ctypes; s = ctypes.c_int(); ctypes.CDLL(None).prctl(2, ctypes.byref(s)); "
-    told = subprocess.run(
+    printed = subprocess.run(
         [sys.executable, "-c", f"{code} end_with_parent(); {read} print(s.value)"],
         cwd=ROOT,
         capture_output=True,
         text=True,
         check=True,
     )
-    assert told.stdout.strip() == "0"
+    assert printed.stdout.strip() == "0"
 
 
 def test_processes_that_would_wait_for_each_other_are_named(tmp_path: Path) -> None:
@@ -116,7 +116,7 @@ def _imported(source: Path) -> set[str]:
     return {name.split(".")[0] for name in names}
 
 
-def test_versions_asks_for_everything_that_is_imported() -> None:
+def test_versions_cover_everything_that_is_imported() -> None:
     folder = ROOT / "fem_reference"
     # what ParaView runs, also beside a solution's fields, we do not import;
     # MuJoCo has an environment of its own
@@ -153,7 +153,7 @@ def test_a_compilation_that_was_killed_does_not_stop_the_next_run(tmp_path: Path
         assert left() == sorted([*names, library])
 
 
-def test_a_missing_module_is_told_before_a_run(tmp_path: Path) -> None:
+def test_a_missing_module_is_reported_before_a_run(tmp_path: Path) -> None:
     (tmp_path / "meshio.py").write_text("raise ImportError('not here')", encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"}
     command = [sys.executable, "-m", "fem_reference", "versions"]

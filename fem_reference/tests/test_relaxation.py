@@ -116,7 +116,7 @@ def test_terms_that_never_or_at_once_relax_leave_an_elastic_material() -> None:
 
 
 @pytest.mark.parametrize("edge", ["clamped", "free"])
-def test_ledgers_close(edge: str) -> None:
+def test_balances_close(edge: str) -> None:
     scene = relaxing("outer", "plate", plate__edge=edge)
     many = run_of(scene)
     one = run_of(scene, end_time=float(many.times[-1]), most_levels=1)
@@ -169,12 +169,12 @@ def test_damping_and_relaxation_together() -> None:
     ],
     ids=["friction", "film", "viscous film", "drag, mass and damping"],
 )
-def test_ledger_closes_beside_another_loss(beside: dict[str, Any]) -> None:
+def test_balance_closes_with_another_loss(other_loss: dict[str, Any]) -> None:
     coarse: dict[str, Any] = {
         "reference__elements_per_contact_radius": 3,
         "run__end_time": 1e-4,
     }
-    scene = relaxing("outer", "plate", **beside, **coarse)
+    scene = relaxing("outer", "plate", **other_loss, **coarse)
     run = run_of(scene, end_time=1e-4, most_levels=1)
     assert run.losses is not None and run.losses.bodies is not None
     assert sum(run.losses.bodies) > 0.05 * run.initial_energy
@@ -298,8 +298,10 @@ def test_stress_relaxes_under_a_strain_that_stays() -> None:
     assert np.allclose(loop.effective, loop.u)
     loop.v[:] = 0.0
     loop.drift(5000)
-    held: Floats = loop.effective / np.where(loop.u == 0.0, 1.0, loop.u)
+    retained: Floats = loop.effective / np.where(loop.u == 0.0, 1.0, loop.u)
     rows = system.body(PLATE)
     left = 1.0 - sum(t["ratio"] * (1.0 - math.exp(-1e-5 / t["time"])) for t in TERMS)
-    assert np.allclose(held[rows][1::2][stretched[system.first[1] : system.first[2], 1] != 0], left)
+    assert np.allclose(
+        retained[rows][1::2][stretched[system.first[1] : system.first[2], 1] != 0], left
+    )
     assert np.allclose(loop.effective[system.body(OUTER)], loop.u[system.body(OUTER)])

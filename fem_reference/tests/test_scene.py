@@ -97,7 +97,7 @@ def test_absent_file(tmp_path: Path) -> None:
         read_scene(tmp_path / "none.json")
 
 
-def test_document_is_kept_for_the_provenance(tmp_path: Path) -> None:
+def test_document_is_stored_for_the_provenance(tmp_path: Path) -> None:
     path = tmp_path / "scene.json"
     path.write_text(json.dumps(document()))
     assert read_scene(path).raw == document()

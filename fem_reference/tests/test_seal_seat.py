@@ -148,7 +148,7 @@ def test_sound_meshes_and_long_edges_are_left_as_they_are(
 def test_nodes_of_the_ring_lie_on_the_sphere_and_nothing_penetrates(coarse: SeatModel) -> None:
     design = scene(True)
     ring, radius = design.ring(), design.sphere_radius
-    touching = 0
+    in_contact = 0
     for contact, patch in zip(coarse.model.contacts[:2], coarse.patches[:2], strict=True):
         assert isinstance(contact, SphereContact) and contact.places is not None
         away = contact.places - np.array(ring.sphere_centre)
@@ -159,12 +159,12 @@ def test_nodes_of_the_ring_lie_on_the_sphere_and_nothing_penetrates(coarse: Seat
         # The tangent cone: the gap grows with the square of the distance from the ring.
         expected = np.hypot(radius, patch.distances) - radius
         assert np.allclose(gap, expected, atol=1e-9 * radius)
-        touching += int(np.count_nonzero(on_ring))
+        in_contact += int(np.count_nonzero(on_ring))
         # Normals are those of the sphere where it touches.
         normals = -away[on_ring] / radius
         assert np.allclose(patch.normals[on_ring], normals, atol=1e-9)
     # Corners and midside nodes of a half circle of edges.
-    assert touching >= 13
+    assert in_contact >= 13
     # The mesh itself has the midside nodes inside the cone by more than the contact yields.
     chord = ring.distance(coarse.mesh.points[coarse.model.contacts[RIGHT].nodes])
     assert chord.max() > 0.0 and np.any((chord > 1e-6) & (chord < 1e-4))
@@ -209,7 +209,7 @@ def test_the_initial_design_misses_and_the_improved_one_hits(launches: dict[bool
     assert angles[False] < -4.0 and abs(angles[True] - 15.0) < 5.0
 
 
-def test_ledgers_close(launches: dict[bool, SeatRun]) -> None:
+def test_balances_close(launches: dict[bool, SeatRun]) -> None:
     for run in launches.values():
         assert run.energy_residual < 1e-11
         assert run.momentum_residual < 1e-11

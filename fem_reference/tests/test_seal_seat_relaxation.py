@@ -70,7 +70,7 @@ def test_a_very_slow_term_does_nothing_and_a_very_fast_one_softens(mesh: TetMesh
     assert abs(slow.sphere_velocity[0] - fast.sphere_velocity[0]) > 0.01
 
 
-def test_a_seat_loses_what_its_ledger_says(mesh: TetMesh, tmp_path: Path) -> None:
+def test_a_seat_loses_what_its_balance_states(mesh: TetMesh, tmp_path: Path) -> None:
     """And a run that is cut off goes on from its checkpoint as if nothing had been."""
     design = seat([{"ratio": 0.05, "time": 1e-5}, {"ratio": 0.05, "time": 1e-4}])
     whole = launch(design, mesh)

@@ -98,8 +98,8 @@ def solve(tmp_path: Path) -> Callable[..., Convergent]:
         **options: Any,
     ) -> Convergent:
         method = Convergent(order, leads, revision, cut)
-        asked = Options(courant=0.5, checkpoint=tmp_path / "kept", **options)
-        solve_series(method.solver(), method.write, tmp_path / "out", 1.0, Alone(), asked)
+        requested = Options(courant=0.5, checkpoint=tmp_path / "kept", **options)
+        solve_series(method.solver(), method.write, tmp_path / "out", 1.0, Alone(), requested)
         return method
 
     return solve
@@ -154,8 +154,8 @@ def test_what_passes_on_little_of_the_impact_needs_not_be_known_to_more_digits()
     meshes = [MeshResult(0.8**k, row, np.zeros(1), np.zeros(1), {}) for k, row in enumerate(values)]
     band = series.estimates(meshes)["minor"].band
     alone = series.relative_error(meshes, (Target("minor"),))
-    beside = series.relative_error(meshes, (Target("minor", small=0.05, of="force"),))
-    assert (alone, beside) == pytest.approx((band, band / 5.0))
+    with_minor = series.relative_error(meshes, (Target("minor", small=0.05, of="force"),))
+    assert (alone, with_minor) == pytest.approx((band, band / 5.0))
     assert Target("minor", small=0.005, of="force").scale(values[0]) == 1.0
 
 
@@ -173,8 +173,8 @@ def test_where_the_finest_mesh_leads_it_comes_first(
     # What one leading mesh has found is of use under another one that agrees with it.
     with pytest.raises(SolverError):
         solve(leads=True, target_error=1e-5)
-    kept = sorted(path.stem for path in (tmp_path / "kept").glob("mesh*.json"))
-    assert len(kept) > series.MESHES
+    stored = sorted(path.stem for path in (tmp_path / "kept").glob("mesh*.json"))
+    assert len(stored) > series.MESHES
     assert solve(leads=True).factors == [1.0]
 
 
@@ -190,7 +190,7 @@ def test_a_target_out_of_reach_is_an_error_and_leaves_no_result(
         solve(stress_times=(3.0,))
 
 
-def test_meshes_kept_by_a_failed_series_are_used_by_the_same_method_only(
+def test_meshes_of_a_failed_series_are_used_by_the_same_method_only(
     solve: Callable[..., Convergent],
 ) -> None:
     with pytest.raises(SolverError):
@@ -202,21 +202,21 @@ def test_meshes_kept_by_a_failed_series_are_used_by_the_same_method_only(
     assert len(solve(revision=2).factors) == series.MESHES
 
 
-def test_a_kept_mesh_that_was_edited_is_solved_again(
+def test_a_stored_mesh_that_was_edited_is_solved_again(
     solve: Callable[..., Convergent], tmp_path: Path
 ) -> None:
     with pytest.raises(SolverError):
         solve(target_error=1e-5)
-    kept = tmp_path / "kept" / "mesh+1.json"
-    text = kept.read_text(encoding="utf-8")
+    stored = tmp_path / "kept" / "mesh+1.json"
+    text = stored.read_text(encoding="utf-8")
     value = json.loads(text)["quantities"]["value"]
-    kept.write_text(text.replace(repr(value), repr(value + 0.1)), encoding="utf-8")
+    stored.write_text(text.replace(repr(value), repr(value + 0.1)), encoding="utf-8")
     method = solve()
     assert len(method.factors) == 2
     assert value in {mesh.values["value"] for mesh in method.meshes}
     with pytest.raises(SolverError):
         solve(target_error=1e-5)
-    curves = kept.with_name(f"{kept.stem}-curves.npz")
+    curves = stored.with_name(f"{stored.stem}-curves.npz")
     curves.write_bytes(curves.read_bytes()[:-20])
     assert len(solve().factors) == 2
 

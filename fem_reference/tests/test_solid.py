@@ -75,21 +75,21 @@ def test_products_by_element_are_those_of_the_matrix(mesh: TetMesh) -> None:
 def test_a_flat_element_is_avoided_by_slightly_smaller_ones(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    asked = []
+    requested = []
 
     def flat_at_first(name: str, build: object, size: SizeField) -> tuple[Floats, Ints]:
-        asked.append((size.least, size.largest))
+        requested.append((size.least, size.largest))
         points = np.vstack([np.zeros(3), np.eye(3)])
-        points[3, 2] = 1e-3 if len(asked) == 1 else 1.0
+        points[3, 2] = 1e-3 if len(requested) == 1 else 1.0
         return points, np.array([[0, 1, 2, 3]])
 
     monkeypatch.setattr(meshing, "generate", flat_at_first)
     size = SizeField(((0.0, 0.0, 0.0),), 1.0, 0.2, 0.4, 0.5)
     points, _ = meshing._mended("plate", lambda: None, size)
     assert points[3, 2] == 1.0
-    assert np.array(asked) == pytest.approx(np.array([(0.2, 0.5), (0.198, 0.495)]))
+    assert np.array(requested) == pytest.approx(np.array([(0.2, 0.5), (0.198, 0.495)]))
     meshing._mended("plate", lambda: None, size)
-    assert len(asked) == 3
+    assert len(requested) == 3
 
 
 def test_rigid_motions_cost_no_force(mesh: TetMesh) -> None:

@@ -87,7 +87,7 @@ PHYSICAL = (
 )
 
 
-def test_ledgers_close_and_the_folder_is_complete(whole: Path) -> None:
+def test_balances_close_and_the_folder_is_complete(whole: Path) -> None:
     found = summary(whole)
     assert found["energy_residual"] < 1e-11
     assert found["momentum_residual"] < 1e-11
@@ -131,27 +131,29 @@ def test_fields_are_a_series_that_meshio_reads(whole: Path) -> None:
 
 
 def test_a_killed_run_goes_on_to_the_same_result(folder: Path, whole: Path) -> None:
-    out, kept = folder / "resumed", folder / "kept"
+    out, states_folder = folder / "resumed", folder / "kept"
     provenance = json.loads((whole / "provenance.json").read_text(encoding="utf-8"))
     tried = provenance["settings"]["meshes_tried"]
-    start = command(scene(folder), out, "--checkpoint", str(kept), "--checkpoint-interval", "0")
+    start = command(
+        scene(folder), out, "--checkpoint", str(states_folder), "--checkpoint-interval", "0"
+    )
     with subprocess.Popen(
         start, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as process:
         deadline = time.monotonic() + 600.0
         # The last mesh is the one whose run gives the result.
-        while not (kept / f"mesh+0-{tried}.npz").exists() and time.monotonic() < deadline:
+        while not (states_folder / f"mesh+0-{tried}.npz").exists() and time.monotonic() < deadline:
             assert process.poll() is None, "ended before its first checkpoint"
             time.sleep(0.005)
         os.kill(process.pid, signal.SIGKILL)
     assert not out.exists()
-    states = sorted(file.name for file in kept.glob("*.npz"))
+    states = sorted(file.name for file in states_folder.glob("*.npz"))
     assert f"mesh+0-{tried}.npz" in states
-    with np.load(kept / f"mesh+0-{tried}.npz") as state:
+    with np.load(states_folder / f"mesh+0-{tried}.npz") as state:
         # In the middle of the impact.
         assert state["rows"][-1, 2] > 0.0
         assert state["rows"].shape[0] > 10
-    again = solve(scene(folder), out, "--checkpoint", str(kept))
+    again = solve(scene(folder), out, "--checkpoint", str(states_folder))
     assert again.returncode == 0, again.stderr
     # The coarser meshes are not run again, and the main one not from its start.
     assert "mesh 5 of 5" in again.stdout
@@ -160,7 +162,7 @@ def test_a_killed_run_goes_on_to_the_same_result(folder: Path, whole: Path) -> N
     for name in (*PHYSICAL, "momentum_residual", "steps"):
         assert b[name] == pytest.approx(a[name], rel=1e-12, abs=1e-25), name
     assert (out / "history.csv").read_bytes() == (whole / "history.csv").read_bytes()
-    assert not kept.exists()
+    assert not states_folder.exists()
 
 
 def test_a_checkpoint_of_another_scene_is_not_used(folder: Path) -> None:

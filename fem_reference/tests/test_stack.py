@@ -61,24 +61,24 @@ def test_rod_is_as_stiff_as_stroke_and_blocked_force_say() -> None:
 
 
 @pytest.mark.parametrize("drive", [None, Supply(1.0, 20e-6), Supply(5.0, None)])
-def test_ledger_up_to_the_touch(drive: Supply | None) -> None:
+def test_balance_up_to_the_first_contact(drive: Supply | None) -> None:
     body = StackBody(dataclasses.replace(STACK, gap=6e-6, drive=drive), 6)
-    touch, matrices = body.touch, body.matrices
-    u, v = touch.displacement.ravel(), touch.velocity.ravel()
+    first_contact, matrices = body.first_contact, body.matrices
+    u, v = first_contact.displacement.ravel(), first_contact.velocity.ravel()
     assert -u[-1] == pytest.approx(6e-6, rel=1e-9)
     energy = 0.5 * u @ (matrices.stiffness @ u) + 0.5 * np.repeat(matrices.mass, 2) @ v**2
-    assert energy == pytest.approx(touch.work, rel=2e-3)
+    assert energy == pytest.approx(first_contact.work, rel=2e-3)
     if drive is None:
         # Behind the wave the tip has its speed.
-        assert 6e-6 / touch.time == pytest.approx(STACK.step_speed, rel=0.06)
+        assert 6e-6 / first_contact.time == pytest.approx(STACK.step_speed, rel=0.06)
         return
-    taken = STACK.voltage * touch.charge - 0.5 * drive.elastance * touch.charge**2
-    voltage = (touch.charge + STACK.force_per_voltage * u[-1]) / STACK.held_capacitance
-    held = 0.5 * STACK.held_capacitance * voltage**2 + touch.work
-    assert taken == pytest.approx(held + touch.heat, rel=1e-3)
+    taken = STACK.voltage * first_contact.charge - 0.5 * drive.elastance * first_contact.charge**2
+    voltage = (first_contact.charge + STACK.force_per_voltage * u[-1]) / STACK.clamped_capacitance
+    stored = 0.5 * STACK.clamped_capacitance * voltage**2 + first_contact.work
+    assert taken == pytest.approx(stored + first_contact.heat, rel=1e-3)
 
 
-def test_a_plate_out_of_reach_is_told() -> None:
+def test_a_plate_out_of_reach_is_reported() -> None:
     body = StackBody(dataclasses.replace(STACK, gap=40e-6), 3)
     with pytest.raises(SceneError, match=r"outer\.gap is 4e-05 m"):
-        _ = body.touch
+        _ = body.first_contact

@@ -114,8 +114,8 @@ def test_a_process_alone_among_several_is_refused(tmp_path: Path) -> None:
 def test_linear_algebra_has_one_thread() -> None:
     environment = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"}
     code = "import os, fem_reference; print(os.environ['OPENBLAS_NUM_THREADS'])"
-    told = subprocess.run(
+    printed = subprocess.run(
         [sys.executable, "-c", code],
         cwd=ROOT, env=environment, capture_output=True, text=True, check=True,
     )  # fmt: skip
-    assert told.stdout.strip() == "1"
+    assert printed.stdout.strip() == "1"

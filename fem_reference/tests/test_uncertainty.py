@@ -21,7 +21,7 @@ def test_grid_convergence_index_of_the_published_example() -> None:
 def test_limit_and_error_of_a_clean_sequence() -> None:
     estimate = least_squares(7.0 + 0.3 * SIZES**1.5, SIZES)
     assert estimate.extrapolated == pytest.approx(7.0, abs=1e-12)
-    assert estimate.scatter == pytest.approx(0.0, abs=1e-12)
+    assert estimate.deviation == pytest.approx(0.0, abs=1e-12)
     assert estimate.band == pytest.approx(0.3, rel=1e-9)
 
 
@@ -34,10 +34,10 @@ def test_what_another_order_makes_of_the_band(order: float, least: float, most: 
 
 def test_bands_of_curves_are_those_of_every_instant() -> None:
     curves = np.random.default_rng(5).standard_normal((5, 7, 2))
-    limit, scatter, band = bands(curves, SIZES)
+    limit, deviation, band = bands(curves, SIZES)
     one = least_squares(curves[:, 3, 1], SIZES)
-    assert (limit[3, 1], scatter[3, 1], band[3, 1]) == pytest.approx(
-        (one.extrapolated, one.scatter, one.band)
+    assert (limit[3, 1], deviation[3, 1], band[3, 1]) == pytest.approx(
+        (one.extrapolated, one.deviation, one.band)
     )
 
 
@@ -56,16 +56,16 @@ def test_fewer_than_four_meshes_are_refused() -> None:
 
 
 @pytest.mark.parametrize(("order", "scatter_order"), [(1.5, 2.0), (2.0, 0.0), (2.0, 2.0)])
-def test_band_holds_the_limit_of_scattered_sequences(order: float, scatter_order: float) -> None:
+def test_band_holds_the_limit_of_perturbed_sequences(order: float, scatter_order: float) -> None:
     """With scatter a third as large as the error: 95 of 100 bands hold and are no barn doors."""
     random = np.random.default_rng(11)
-    held, widths = 0, []
+    covered, widths = 0, []
     for _ in range(400):
         values = 0.3 * SIZES**order + 0.1 * SIZES**scatter_order * random.standard_normal(5)
         estimate = least_squares(values, SIZES)
-        held += abs(values[0]) <= estimate.band
+        covered += abs(values[0]) <= estimate.band
         widths.append(estimate.band)
-    assert held >= 0.95 * 400
+    assert covered >= 0.95 * 400
     assert np.median(widths) < 3.5 * 0.3
 
 

@@ -10,7 +10,7 @@ mod samples;
 mod scene;
 
 use detached::detached;
-use impactcheck::cli::in_process::{self, AskedModel, Comparing, ModelRequest};
+use impactcheck::cli::in_process::{self, Comparing, ModelRequest, RequestedModel};
 use impactcheck::interrupt;
 use impactcheck::kinds::SharedBodies;
 use impactcheck::result::Outcome;
@@ -33,7 +33,7 @@ static FILES: project::Embedded = impactcheck_embedded::files!();
 
 /// An error of the program as Python raises it.
 fn raised(error: Error) -> PyErr {
-    python::Error::new_err((in_process::told(&error), error.exit_status() as u8))
+    python::Error::new_err((in_process::in_words(&error), error.exit_status() as u8))
 }
 
 fn usage(error: impl ToString) -> PyErr {
@@ -63,12 +63,12 @@ fn reduced(
     tolerance: Option<f64>,
     threads: Option<usize>,
 ) -> PyResult<Vec<Run>> {
-    let model = model.map(AskedModel::from_str).transpose().map_err(usage)?;
-    let asked = ModelRequest { model, modes, tolerance, mesh: None };
+    let model = model.map(RequestedModel::from_str).transpose().map_err(usage)?;
+    let request = ModelRequest { model, modes, tolerance, mesh: None };
     let (bodies, stopped) = (SharedBodies::default(), AtomicBool::new(false));
     let one = |scene: &Py<Scene>| match stopped.load(Relaxed) {
         true => Err(Error::Internal("interrupted".into())),
-        false => in_process::reduced(&scene.get().scene, &asked, &bodies),
+        false => in_process::reduced(&scene.get().scene, &request, &bodies),
     };
     let all = || scenes.par_iter().map(one).collect::<Vec<Result<Outcome>>>();
     let run_all = || match threads {
@@ -110,9 +110,9 @@ fn compare(
     let models =
         models.iter().map(|name| name.parse()).collect::<std::result::Result<_, _>>().map_err(usage)?;
     let resolution = resolution.parse().map_err(usage)?;
-    let asked = Comparing { models, resolution, compute, allow_external, out, measured, bandwidth, speed };
+    let request = Comparing { models, resolution, compute, allow_external, out, measured, bandwidth, speed };
     let scenes: Vec<_> = scenes.iter().map(|scene| scene.get().placed()).collect();
-    let compare = || in_process::compare(scenes, asked);
+    let compare = || in_process::compare(scenes, request);
     let compared = detached(py, interrupt::end_children, compare)?.map_err(raised)?;
     Ok((json(&compared.comparison)?, compared.figures))
 }

@@ -16,7 +16,7 @@ const INTERVAL: Duration = Duration::from_millis(100);
 struct SearchProgress {
     tried: usize,
     best: Option<f64>,
-    told: Instant,
+    reported: Instant,
     /// What the caller's function raised.
     raised: Option<PyErr>,
 }
@@ -31,15 +31,15 @@ pub fn optimise(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, String, String)> {
     let template = scene.template().map_err(raised)?;
-    let (stopped, told) = (AtomicBool::new(false), Instant::now());
-    let state = Mutex::new(SearchProgress { tried: 0, best: None, told, raised: None });
+    let (stopped, reported) = (AtomicBool::new(false), Instant::now());
+    let state = Mutex::new(SearchProgress { tried: 0, best: None, reported, raised: None });
     let state = || -> MutexGuard<SearchProgress> { state.lock().unwrap_or_else(PoisonError::into_inner) };
     let watch = |worth: Option<f64>| {
         let mut so_far = state();
         so_far.tried += 1;
         so_far.best = so_far.best.into_iter().chain(worth).reduce(f64::max);
-        if let (Some(progress), true) = (&progress, so_far.told.elapsed() >= INTERVAL) {
-            so_far.told = Instant::now();
+        if let (Some(progress), true) = (&progress, so_far.reported.elapsed() >= INTERVAL) {
+            so_far.reported = Instant::now();
             let (tried, best) = (so_far.tried, so_far.best);
             // what it calls may search, too
             drop(so_far);

@@ -105,7 +105,7 @@ def test_scenes_are_copied_and_pickled(tmp_path: Path) -> None:
     assert caught.value.exit_status == 3
 
 
-def test_models_beside_the_reference() -> None:
+def test_models_are_compared_with_the_reference() -> None:
     comparison = ic.compare(ic.Scene.read("scaled-plate-r10"))
     assert comparison.verdict == "pass"
     rows = {row["quantity"]: row for row in comparison.discrepancies("B")}
@@ -172,16 +172,16 @@ def record(file: Path, seed: int) -> Path:
     return file
 
 
-def test_measured_records_beside_the_models(tmp_path: Path) -> None:
+def test_measured_records_are_compared_with_the_models(tmp_path: Path) -> None:
     scene = ic.Scene.read("scaled-plate-r10")
     records = [record(tmp_path / f"run{seed}.csv", seed) for seed in (1, 2)]
     comparison = ic.compare(scene, models=["B", "C"], measured=records, bandwidth="150 kHz")
     measured = comparison.measured()
     assert measured is not None and measured["bandwidth"] == 150e3
-    partners = {row["partner"]: row for row in measured["partners"]}
-    assert set(partners) == {"reference", "B", "C"} and measured["efficiency"]["count"] == 2
+    comparators = {row["partner"]: row for row in measured["partners"]}
+    assert set(comparators) == {"reference", "B", "C"} and measured["efficiency"]["count"] == 2
     assert abs(measured["efficiency"]["mean"] - 0.695) < 0.02
-    assert abs(partners["reference"]["efficiency_difference"]) < 0.02
+    assert abs(comparators["reference"]["efficiency_difference"]) < 0.02
     assert ic.compare(scene, models=["C"]).measured() is None
     for arguments, word in [
         ({"measured": records, "bandwidth": "1 Hz"}, "100 MHz"),
@@ -216,7 +216,7 @@ def test_an_optimum_is_the_programs(tmp_path: Path) -> None:
     assert all(best is None or best <= optimum.objective + 1e-3 for _, best in heard)
 
 
-def test_an_optimum_tells_how_far_it_is_and_what_is_wrong() -> None:
+def test_an_optimum_reports_its_progress_and_errors() -> None:
     scene, heard = ic.Scene(TABLE_1), []
     over = {"plate.thickness": ("1 mm", "3 mm"), "plate.radius": ("25 mm", "40 mm")}
 
@@ -267,7 +267,7 @@ def test_errors_have_the_programs_sentence_and_status() -> None:
     assert caught.value.exit_status == 11
 
 
-def test_a_sweep_keeps_the_order_and_tells_its_first_error() -> None:
+def test_a_sweep_keeps_the_order_and_raises_its_first_error() -> None:
     radii = ("6 mm", "8 mm", "10 mm", "12 mm")
     scenes = [ic.Scene({**TABLE_1, "inner": {**SPHERE, "radius": r}}) for r in radii]
     together = [result.efficiency for result in ic.sweep(scenes, model="B")]

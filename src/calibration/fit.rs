@@ -139,7 +139,7 @@ pub fn fit(
             "{count} data are too few for the standard deviations of {unknowns} parameters"
         ))
     })?;
-    Ok(told(&problem, scatter, slopes, &blocks))
+    Ok(fit_statistics(&problem, scatter, slopes, &blocks))
 }
 
 /// Covariance of `left` if all of it is independent and scatters alike.
@@ -162,7 +162,7 @@ fn along(directions: &DMatrix<f64>, blocks: &[DMatrix<f64>]) -> DMatrix<f64> {
 }
 
 /// What the `slopes` at the solution tell, the data having the covariance of `blocks`.
-fn told<F: Fn(&[f64]) -> Option<Vec<f64>>>(
+fn fit_statistics<F: Fn(&[f64]) -> Option<Vec<f64>>>(
     problem: &FitProblem<F>,
     scatter: f64,
     slopes: DMatrix<f64>,
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn inputs_that_act_through_their_product_are_not_told_apart() {
+    fn inputs_that_act_through_their_product_are_not_identifiable() {
         let data = noisy(7);
         let product = |p: &[f64], t: f64| model(&[p[0] * p[3], p[1], p[2]], t);
         let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn too_few_data_are_told() {
+    fn too_few_data_are_an_error() {
         let few = |p: &[f64]| Some(vec![p[0] - 1.0]);
         assert!(matches!(fit(&[2.0, 1.0], &[1.0, 1.0], few, independent), Err(Error::Solver(_))));
     }

@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_records_don_t_tell_is_said() {
+    fn parameters_that_are_not_identifiable_are_reported() {
         let template = Template::parse("scene", SCENE).expect("shipped scene");
         let records = [record(&template, &[], 0.01, 3)];
         // undamped: a damping ratio can't be looked for about nothing; a count neither

@@ -150,7 +150,7 @@ mod tests {
 
     /// Offset and drift of an instrument are no differences, and of a trusted signal what its velocity may still contain.
     #[test]
-    fn what_an_instrument_may_add_is_left_out() {
+    fn instrument_offsets_are_eliminated() {
         for (quantity, speed, offset_counts, drift_counts) in [
             ("outer_velocity", Speed::Scene, false, false),
             ("outer_displacement", Speed::Scene, false, false),

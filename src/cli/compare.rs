@@ -29,7 +29,7 @@ pub fn run(context: &Context, OwnArguments { shared, watch }: OwnArguments) -> R
     let compared = || {
         once(context, arguments).inspect_err(|error| {
             if error.exit_status() == ExitStatus::Reference && !arguments.json.json {
-                tell_alone(context, arguments);
+                print_without_reference(context, arguments);
             }
         })
     };
@@ -41,11 +41,11 @@ pub fn run(context: &Context, OwnArguments { shared, watch }: OwnArguments) -> R
 }
 
 /// What the reduced models say without a reference, as far as they do.
-fn tell_alone(context: &Context, arguments: &Arguments) {
+fn print_without_reference(context: &Context, arguments: &Arguments) {
     for (_, scene) in compare_inputs::scenes(&arguments.scenes).unwrap_or_default() {
-        let told = kinds::of(&scene).alone(&scene, (&arguments.models[..], arguments.tolerance));
-        let told = told.and_then(|outcomes| super::print(&report::alone(&scene, &outcomes)));
-        if let Err(error) = told {
+        let printed = kinds::of(&scene).alone(&scene, (&arguments.models[..], arguments.tolerance));
+        let printed = printed.and_then(|outcomes| super::print(&report::alone(&scene, &outcomes)));
+        if let Err(error) = printed {
             context.note(super::describe(&error));
         }
     }
@@ -60,7 +60,7 @@ fn once(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let entries = job.trends(&comparisons, None)?;
     let report = job.report(context, &results, comparisons, &entries)?;
     let comparison = job.finish(context, &report, None)?;
-    Ok(match comparison.lacks_a_result() {
+    Ok(match comparison.has_no_result() {
         true => ExitStatus::Solver,
         false if job.refuses(&comparison) => ExitStatus::ToleranceExceeded,
         false => ExitStatus::Pass,

@@ -1,7 +1,7 @@
 //! What `compare` and `gate` are both asked.
 
-use super::asked_model::{self, AskedModel};
 use super::external::Permission;
+use super::requested_model::{self, RequestedModel};
 use super::{JsonArgument, compare_inputs};
 use crate::measured::Speed;
 use crate::reference::Resolution;
@@ -15,12 +15,12 @@ pub struct Arguments {
     /// Models to compare; auto is the least expensive one within the tolerance, external the programs under
     /// [[external]]
     #[arg(long, value_delimiter = ',', default_value = "A,B,C,external")]
-    pub(super) models: Vec<AskedModel>,
+    pub(super) models: Vec<RequestedModel>,
     #[command(flatten)]
     pub(super) permission: Permission,
     /// Tolerance of auto: relative error of efficiency, final velocity of the outer body and both peak forces
     /// [default: 1%]
-    #[arg(long, value_parser = asked_model::tolerance)]
+    #[arg(long, value_parser = requested_model::tolerance)]
     pub(super) tolerance: Option<f64>,
     /// Resolution of the reference: coarse, paper (standard), fine, or the value given to --target-error, such as 0.2%
     /// [default: paper; `compare` takes the finest stored one of a scene that has no other]

@@ -1,12 +1,12 @@
 //! A comparison from scenes to the report: what `compare` and `gate` do alike.
 
-use super::asked_model::AskedModel;
 use super::compare_arguments::Arguments;
 use super::compare_inputs;
 use super::external;
-use super::scatter::scatter;
+use super::propagated::propagate;
+use super::requested_model::RequestedModel;
 use super::second_program;
-use super::stored_references::{look_up, tell_reused};
+use super::stored_references::{look_up, report_reused};
 use super::{Context, kinds, validated_scenes};
 use crate::ci::commit::Commit;
 use crate::ci::{acceptance, trend};
@@ -54,10 +54,10 @@ impl<'a> Job<'a> {
         let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
         // of all shipped scenes those are compared that have one of the models
         if arguments.scenes.is_empty() {
-            let (kept, left_out) =
+            let (supported, omitted) =
                 scenes.into_iter().partition(|(_, scene)| kinds::has_one_of(scene, &arguments.models));
-            scenes = kept;
-            for (_, scene) in left_out {
+            scenes = supported;
+            for (_, scene) in omitted {
                 context.note(format_args!("{}", crate::kinds::models_only(&scene)));
             }
         }
@@ -68,7 +68,8 @@ impl<'a> Job<'a> {
     pub(super) fn of(arguments: &'a Arguments, scenes: Vec<(PathBuf, Scene)>) -> Result<Self> {
         let start = Instant::now();
         compare_inputs::named_apart(&scenes)?;
-        if let (Some(tolerance), false) = (arguments.tolerance, arguments.models.contains(&AskedModel::Auto))
+        if let (Some(tolerance), false) =
+            (arguments.tolerance, arguments.models.contains(&RequestedModel::Auto))
         {
             return Err(Error::Usage(format!(
                 "--tolerance {tolerance} is for the model auto, which is not among --models"
@@ -80,15 +81,15 @@ impl<'a> Job<'a> {
         if let Some((_, scene)) =
             scenes.iter().find(|(_, scene)| !kinds::has_one_of(scene, &arguments.models))
         {
-            let names: Vec<String> = arguments.models.iter().map(AskedModel::to_string).collect();
+            let names: Vec<String> = arguments.models.iter().map(RequestedModel::to_string).collect();
             return Err(Error::Usage(format!(
                 "--models {}: {}",
                 names.join(","),
                 crate::kinds::models_only(scene)
             )));
         }
-        if arguments.models.contains(&AskedModel::External) {
-            arguments.permission.ask(&scenes)?;
+        if arguments.models.contains(&RequestedModel::External) {
+            arguments.permission.require(&scenes)?;
         }
         let records = compare_inputs::records(&arguments.measured, &scenes)?;
         let figures = compare_inputs::figures(arguments.figure.as_ref(), &scenes)?;
@@ -115,13 +116,13 @@ impl<'a> Job<'a> {
     pub(super) fn results(&self, context: &Context) -> Result<Vec<Results>> {
         let references = look_up(context, self.resolution(), self.arguments.compute, &self.scenes)?;
         for stored in &references {
-            tell_reused(context, stored);
+            report_reused(context, stored);
         }
         let result = |((file, scene), stored): (&(PathBuf, Scene), Stored)| {
-            let asked = (&self.arguments.models[..], self.arguments.tolerance);
+            let request = (&self.arguments.models[..], self.arguments.tolerance);
             let models = kinds::of(scene);
-            let (mut reduced, cost) = models.beside(context, scene, &stored, asked)?;
-            if self.arguments.models.contains(&AskedModel::External) {
+            let (mut reduced, cost) = models.with_reference(context, scene, &stored, request)?;
+            if self.arguments.models.contains(&RequestedModel::External) {
                 reduced.extend(external::results(
                     context,
                     file,
@@ -130,7 +131,7 @@ impl<'a> Job<'a> {
                 ));
             }
             let coarser = self.coarser(context, file, scene).map(|stored| -> Result<_> {
-                let (reduced, _) = models.beside(context, scene, &stored, asked)?;
+                let (reduced, _) = models.with_reference(context, scene, &stored, request)?;
                 Ok((stored, reduced))
             });
             let other = second_program::independent(context, file, scene, self.arguments)?;
@@ -171,7 +172,7 @@ impl<'a> Job<'a> {
             context.note(format_args!("scene `{}` has no discrepancy budget: {error}", scene.name));
             Vec::new()
         });
-        let scatters = scatter(context, file, scene, reduced).unwrap_or_else(|error| {
+        let propagations = propagate(context, file, scene, reduced).unwrap_or_else(|error| {
             context.note(format_args!(
                 "scene `{}` is compared as if its inputs were certain: {error}",
                 scene.name
@@ -180,12 +181,12 @@ impl<'a> Job<'a> {
         });
         let how = (self.arguments.bandwidth, self.arguments.speed);
         let measured = (!self.records.is_empty())
-            .then(|| measured::compare(scene, &self.records, reference, reduced, how, &scatters));
+            .then(|| measured::compare(scene, &self.records, reference, reduced, how, &propagations));
         let input = ComparisonInput {
             coarser: coarser.as_ref().map(|(stored, reduced)| (&stored.outcome, &reduced[..])),
             other: other.as_ref().map(|other| &other.outcome),
             measured: measured.transpose()?,
-            scatters,
+            propagations,
             accepted: acceptance::checks(&acceptances, &reference.summary, self.resolution()),
             changed_tolerances: compare_inputs::changed_tolerances(file, &acceptances)?,
             budget,
@@ -242,7 +243,7 @@ impl<'a> Job<'a> {
         let place = self.scenes.iter().position(|(_, other)| other.name == scene.name);
         let named = place.and_then(|k| scenes.get(k)).unwrap_or(&scene.name);
         let mut command = format!("impactcheck compare {named}");
-        let models: Vec<String> = models.iter().map(AskedModel::to_string).collect();
+        let models: Vec<String> = models.iter().map(RequestedModel::to_string).collect();
         if models != ["A", "B", "C", "external"] {
             command += &format!(" --models {}", models.join(","));
         }

@@ -1,7 +1,7 @@
 //! `impactcheck coverage`: which features of scenes are held against an independent solution.
 
-use super::asked_model::AskedModel;
 use super::external::{self, Permission};
+use super::requested_model::RequestedModel;
 use super::{Context, JsonArgument, compare_inputs, kinds};
 use crate::comparison::compare_scene;
 use crate::coverage::{CLOSED_FORM, Case, Coverage, Finding, coverage, exact};
@@ -48,7 +48,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
                 let recorded = known.iter().filter(|v| v.is_of(scene, model) && !here.contains(&v.partner));
                 validations.extend(recorded.map(|v| renewed(context, v, scene, model)));
             }
-            validations.extend(beside_programs(scene, &programs, model));
+            validations.extend(compared_with_programs(scene, &programs, model));
             if !validations.is_empty() || kinds::of(scene).takes(scene, model) {
                 cases.extend(Case::of_all(scene, model, validations.iter().map(Finding::from)));
             }
@@ -83,15 +83,15 @@ fn of_other_programs(store: &Store, scene: &Scene) -> impl Iterator<Item = Store
 }
 
 /// `model` against the scene's programs, as far as they have results.
-fn beside_programs(scene: &Scene, programs: &[Outcome], model: Model) -> Vec<Validation> {
+fn compared_with_programs(scene: &Scene, programs: &[Outcome], model: Model) -> Vec<Validation> {
     let sound = programs.iter().filter(|program| program.summary.failure.is_none());
-    let own = kinds::of(scene).alone(scene, (&[AskedModel::Named(model)], None)).unwrap_or_default();
+    let own = kinds::of(scene).alone(scene, (&[RequestedModel::Named(model)], None)).unwrap_or_default();
     sound.flat_map(|program| Validation::of(scene, &compare_scene(scene, program, &own))).collect()
 }
 
 /// `model` against a stored reference; `None` if it does not take the scene, which is told.
 fn compared(context: &Context, scene: &Scene, stored: &Stored, model: Model) -> Option<Validation> {
-    match kinds::of(scene).beside(context, scene, stored, (&[AskedModel::Named(model)], None)) {
+    match kinds::of(scene).with_reference(context, scene, stored, (&[RequestedModel::Named(model)], None)) {
         Ok((reduced, _)) => Validation::of(scene, &compare_scene(scene, &stored.outcome, &reduced)).pop(),
         Err(error) => {
             context.note(format_args!("{}: model {model}: {error}", scene.name));
@@ -102,7 +102,7 @@ fn compared(context: &Context, scene: &Scene, stored: &Stored, model: Model) -> 
 
 /// What `recorded` says of the reference beside the model as it is now, if that can be run without the reference.
 fn renewed(context: &Context, recorded: &Validation, scene: &Scene, model: Model) -> Validation {
-    match kinds::of(scene).alone(scene, (&[AskedModel::Named(model)], None)) {
+    match kinds::of(scene).alone(scene, (&[RequestedModel::Named(model)], None)) {
         Ok(now) => now.first().map_or_else(|| recorded.clone(), |now| recorded.renewed(&now.summary)),
         Err(error) => {
             context.note(format_args!("{}: model {model}: {error}", scene.name));

@@ -32,7 +32,7 @@ impl Permission {
     ///
     /// # Errors
     /// [`Error::Usage`] with the first program.
-    pub(super) fn ask(self, scenes: &[(PathBuf, Scene)]) -> Result<()> {
+    pub(super) fn require(self, scenes: &[(PathBuf, Scene)]) -> Result<()> {
         if self.is_given() {
             return Ok(());
         }
@@ -66,7 +66,7 @@ pub(super) fn results(
         context.detail(format_args!("{}: {} answered in {solve_seconds:.2} s", scene.name, program.name));
         match failure {
             // not a note: --quiet must not hide that a model is missing
-            Some(why) => super::tell(format_args!(
+            Some(why) => super::notify(format_args!(
                 "error: {}: model `{}` has no result: {why}",
                 scene.name, program.name
             )),

@@ -72,18 +72,18 @@ fn conclude(
     let comparisons = job.comparisons(context, results)?;
     let entries = job.trends(&comparisons, record)?;
     let report = Report { rules, ..job.report(context, results, comparisons, &entries)? };
-    tell_verdicts(job, &report);
+    report_verdicts(job, &report);
     for SceneComparison { scene, changed_tolerances, .. } in report.scenes.iter().map(|s| &s.comparison) {
         for changed in changed_tolerances {
             // not a note: --quiet must not hide that the gate is another one
-            super::tell(format_args!("warning: {scene}: {}", changed.sentence()));
+            super::notify(format_args!("warning: {scene}: {}", changed.sentence()));
         }
     }
     if github::is_running() {
-        tell_github(context, job, &report)?;
+        report_to_github(context, job, &report)?;
     }
     let comparison = job.finish(context, &report, junit)?;
-    if comparison.lacks_a_result() {
+    if comparison.has_no_result() {
         return Ok(ExitStatus::Solver);
     }
     if comparison.verdict.failed() {
@@ -97,28 +97,28 @@ fn conclude(
 
 /// Says on standard error of which scenes nothing is gated, and where the reference is not good enough to tell. Not notes:
 /// --quiet must not hide that less was shown than a pass says.
-fn tell_verdicts(job: &Job, report: &Report) {
+fn report_verdicts(job: &Job, report: &Report) {
     let rules = report.rules;
     for comparison in report.scenes.iter().map(|scene| &scene.comparison) {
         let SceneComparison { scene, verdict, .. } = comparison;
         let is_refused = comparison.is_refused(rules);
         let word = if is_refused { "error" } else { "warning" };
-        let lacking = comparison.without_reference();
+        let without_value = comparison.without_reference();
         match verdict {
             Verdict::NotGated => {
                 let file =
                     job.scenes.iter().find(|(_, s)| s.name == *scene).map_or(Path::new(""), |(file, _)| file);
-                super::tell(format_args!(
+                super::notify(format_args!(
                     "{word}: nothing of scene `{scene}` is gated: {} has no tolerances of the models compared; add for example tolerances.C = {{ efficiency = {{ relative = 0.01 }} }}",
                     file.display()
                 ));
             }
             _ if rules.undecided == Undecided::Pass && !is_refused => {}
-            _ if !lacking.is_empty() => super::tell(format_args!(
+            _ if !without_value.is_empty() => super::notify(format_args!(
                 "{word}: the reference of scene `{scene}` has no value for these tolerances, which stay undecided: {}",
-                lacking.join(", ")
+                without_value.join(", ")
             )),
-            Verdict::Undecided => super::tell(format_args!(
+            Verdict::Undecided => super::notify(format_args!(
                 "{word}: scene `{scene}` is undecided: the uncertainty of its reference is too large for some tolerances; see the lines above for what decides them"
             )),
             _ => {}
@@ -133,7 +133,7 @@ fn commit(job: &Job, record: &Path) -> Result<commit::Commit> {
 }
 
 /// Annotations on standard error, where they don't disturb results, and the summary of the job.
-fn tell_github(context: &Context, job: &Job, report: &Report) -> Result<()> {
+fn report_to_github(context: &Context, job: &Job, report: &Report) -> Result<()> {
     let place = |name: &str| {
         let found = job.scenes.iter().find(|(_, scene)| scene.name == name);
         found.map_or_else(Default::default, |(file, _)| {
@@ -142,7 +142,7 @@ fn tell_github(context: &Context, job: &Job, report: &Report) -> Result<()> {
     };
     for command in github::annotations(report, place) {
         // not a note: --quiet must not hide it
-        super::tell(command);
+        super::notify(command);
     }
     let Some(file) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|file| !file.is_empty()) else {
         return Ok(());

@@ -1,13 +1,13 @@
 //! What the commands compute, for programs that hold scenes in memory, as the Python package does: the same models, defaults,
 //! bounds and sentences; nothing is printed.
 
-pub use super::asked_model::AskedModel;
-pub use super::asked_model::ModelRequest;
+pub use super::requested_model::ModelRequest;
+pub use super::requested_model::RequestedModel;
 
-use super::asked_model::within_bounds;
 use super::compare_arguments::Arguments;
 use super::comparison_job::Job;
 use super::optimise::{self, Solved};
+use super::requested_model::within_bounds;
 use super::{Context, compare_inputs, kinds, stored_references};
 use crate::comparison::Comparison;
 use crate::error::{Error, Result};
@@ -27,11 +27,11 @@ const QUIET: Context = Context { store: None, quiet: true, verbose: false };
 ///
 /// # Errors
 /// Those of the command.
-pub fn reduced(scene: &Scene, asked: &ModelRequest, bodies: &SharedBodies) -> Result<Outcome> {
-    if let Some(tolerance) = asked.tolerance {
+pub fn reduced(scene: &Scene, request: &ModelRequest, bodies: &SharedBodies) -> Result<Outcome> {
+    if let Some(tolerance) = request.tolerance {
         within_bounds(tolerance, &format!("tolerance {tolerance}")).map_err(Error::Usage)?;
     }
-    kinds::of(scene).reduced(&QUIET, scene, asked, bodies, true)
+    kinds::of(scene).reduced(&QUIET, scene, request, bodies, true)
 }
 
 /// A scene and its file, which is empty if there is none.
@@ -50,7 +50,7 @@ pub fn reference(scene: Placed, resolution: Resolution, compute: bool) -> Result
 #[derive(Debug)]
 pub struct Comparing {
     /// The models.
-    pub models: Vec<AskedModel>,
+    pub models: Vec<RequestedModel>,
     /// The reference's.
     pub resolution: Resolution,
     /// Whether references that are missing are computed.
@@ -80,8 +80,8 @@ pub struct Compared {
 ///
 /// # Errors
 /// Those of the command.
-pub fn compare(scenes: Vec<Placed>, asked: Comparing) -> Result<Compared> {
-    let Comparing { models, resolution, compute, allow_external, out, measured, bandwidth, speed } = asked;
+pub fn compare(scenes: Vec<Placed>, request: Comparing) -> Result<Compared> {
+    let Comparing { models, resolution, compute, allow_external, out, measured, bandwidth, speed } = request;
     let is_written = out.is_some();
     let mut arguments: Arguments = parsed(&[])?;
     if let Some(bandwidth) = &bandwidth {
@@ -138,14 +138,14 @@ fn parsed<A: Args>(given: &[String]) -> Result<A> {
     let command = A::augment_args(clap::Command::new("impactcheck").no_binary_name(true));
     let found = command.try_get_matches_from(given).and_then(|found| A::from_arg_matches(&found));
     found.map_err(|e| {
-        let told = e.to_string();
-        let sentence = told.split("\n\n").next().unwrap_or_default();
+        let text = e.to_string();
+        let sentence = text.split("\n\n").next().unwrap_or_default();
         Error::Usage(sentence.strip_prefix("error: ").unwrap_or(sentence).to_owned())
     })
 }
 
 /// What the program says of an error, without its colours.
-pub fn told(error: &Error) -> String {
+pub fn in_words(error: &Error) -> String {
     let text = super::describe(error);
     anstream::adapter::strip_str(text.strip_prefix("error: ").unwrap_or(&text)).to_string().trim().to_owned()
 }

@@ -1,6 +1,5 @@
 //! The command line: one file per command, no physics.
 
-mod asked_model;
 mod bench;
 mod calibrate;
 mod compare;
@@ -19,9 +18,10 @@ mod mesh;
 mod new;
 mod optimise;
 mod progress;
+mod propagated;
 mod reduced;
 mod reference;
-mod scatter;
+mod requested_model;
 mod schema;
 mod second_program;
 mod shell;
@@ -164,14 +164,14 @@ impl Context {
     /// A line for people, on standard error.
     fn note(&self, text: impl std::fmt::Display) {
         if !self.quiet {
-            tell(text);
+            notify(text);
         }
     }
 
     /// A line for people who want to know everything, on standard error.
     fn detail(&self, text: impl std::fmt::Display) {
         if self.verbose {
-            tell(text);
+            notify(text);
         }
     }
 }
@@ -179,7 +179,7 @@ impl Context {
 /// The program: listens to Ctrl-C, runs with `arguments` (the first is its name) and gives the exit status.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     if let Err(error) = crate::interrupt::listen() {
-        tell(format_args!("warning: Ctrl-C may leave files behind: {error}"));
+        notify(format_args!("warning: Ctrl-C may leave files behind: {error}"));
     }
     run(arguments) as u8
 }
@@ -222,7 +222,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Man(arguments) => shell::man(&arguments),
     };
     result.unwrap_or_else(|error| {
-        tell(describe(&error));
+        notify(describe(&error));
         error.exit_status()
     })
 }
@@ -260,7 +260,7 @@ fn describe(error: &Error) -> String {
 }
 
 /// A line on standard error, its colours only where they can be seen; a reader that has gone away is no error.
-fn tell(text: impl std::fmt::Display) {
+fn notify(text: impl std::fmt::Display) {
     use std::io::Write;
     let _ = writeln!(anstream::stderr(), "{text}");
 }

@@ -1,6 +1,6 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
-use super::asked_model::{self, ModelRequest};
+use super::requested_model::{self, ModelRequest};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
@@ -16,7 +16,7 @@ pub struct Arguments {
     /// Scene file, name of a shipped scene, or `-` for standard input
     scene: String,
     #[command(flatten)]
-    asked: ModelRequest,
+    request: ModelRequest,
     /// Write displacements, velocities and forces over time to this file (.csv or .parquet)
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
@@ -39,14 +39,14 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         return Err(Error::Usage(format!("--page {}: a page is a file that ends in .html", file.display())));
     }
     let (_, scene) = super::read_scene(&arguments.scene)?;
-    if let (None, Some(model)) = (arguments.asked.model, scene.reduced.model) {
+    if let (None, Some(model)) = (arguments.request.model, scene.reduced.model) {
         context.note(format_args!(
             "model {model} is the scene's choice (`reduced.model`); --model runs another"
         ));
     }
     let outcome = progress::watched(context, &scene.name, || {
         let curves = arguments.history.is_some() || arguments.page.is_some();
-        kinds::of(&scene).reduced(context, &scene, &arguments.asked, &SharedBodies::default(), curves)
+        kinds::of(&scene).reduced(context, &scene, &arguments.request, &SharedBodies::default(), curves)
     })?;
     if let Some(file) = &arguments.page {
         write_file(file, report::model_page(&scene, &outcome).as_bytes())?;
@@ -146,16 +146,16 @@ pub fn table(summary: &Summary) -> String {
         .extend(errors.iter().filter_map(|(name, error)| Some(format!("  {name:<24} {:>14.1e}", (*error)?))));
     let seconds = with_unit(summary.solve_seconds, prefixed("s", summary.solve_seconds), 3);
     lines.extend(summary.steps.map(|steps| format!("  {steps} steps in {seconds}, excluding set-up")));
-    lines.extend(summary.choice.as_ref().map(asked_model::told));
+    lines.extend(summary.choice.as_ref().map(requested_model::choice_in_words));
     lines.join("\n")
 }
 
 /// Flight and vibration, a line for each value.
 fn after_the_impact(summary: &Summary) -> Vec<String> {
     let row = |name: &str, value: Option<f64>, unit| {
-        let told =
+        let text =
             value.map_or_else(|| "none".to_owned(), |value| with_unit(value, prefixed(unit, value), 4));
-        format!("  {name:<24} {told:>14}")
+        format!("  {name:<24} {text:>14}")
     };
     let mut lines = Vec::new();
     if let Some(flight) = &summary.flight {
@@ -186,12 +186,12 @@ fn series(impacts: &[Impact]) -> Vec<String> {
         "impact", "efficiency", "outer peak", "inner peak", "lost"
     )];
     for impact in impacts {
-        let told = |value: Option<f64>, unit| {
+        let shown = |value: Option<f64>, unit| {
             value.map_or_else(|| "-".to_owned(), |value| with_unit(value, prefixed(unit, value), 4))
         };
-        let of = |name: &str, unit| told(impact.quantities.value(name), unit);
+        let of = |name: &str, unit| shown(impact.quantities.value(name), unit);
         let [outer, inner] = ["outer_force_peak", "inner_force_peak"].map(|name| of(name, "N"));
-        let (efficiency, lost) = (of("efficiency", "1"), told(impact.plastic_work, "J"));
+        let (efficiency, lost) = (of("efficiency", "1"), shown(impact.plastic_work, "J"));
         lines.push(format!("  {:<8}{efficiency:>12}{outer:>14}{inner:>14}{lost:>14}", impact.number));
     }
     lines

@@ -111,8 +111,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     }
     let (scene, store) = (&scene, &context.store().for_scene_in(&file));
     let resolution = resolution(arguments)?;
-    let wanted = !arguments.fresh && arguments.stress_at.is_empty() && arguments.fields == 0;
-    let stored = match wanted.then(|| store.find(scene, resolution)) {
+    let use_stored = !arguments.fresh && arguments.stress_at.is_empty() && arguments.fields == 0;
+    let stored = match use_stored.then(|| store.find(scene, resolution)) {
         Some(Lookup::Found(stored)) => {
             context.note(format_args!("found {}", stored.folder.display()));
             require_sound(scene, &stored)?;

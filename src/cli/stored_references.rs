@@ -72,7 +72,7 @@ pub(super) fn only_stored(context: &Context, scenes: &[String]) -> Result<Option
 }
 
 /// Where a reference comes from: that it is not from the store the caller named is always said.
-pub(super) fn tell_reused(context: &Context, stored: &Stored) {
+pub(super) fn report_reused(context: &Context, stored: &Stored) {
     let scene = &stored.outcome.summary.scene;
     let made = stored.provenance["created"].as_str().map_or(String::new(), |when| format!(", made {when}"));
     let store = context.store();

@@ -102,7 +102,7 @@ fn named(context: &Context, arguments: &Named) -> Result<ExitStatus> {
     if arguments.json.json {
         super::print_json(&study)?;
     } else {
-        super::print(study::told(&study).trim_end())?;
+        super::print(study::in_words(&study).trim_end())?;
         if arguments.out.is_none() && study.rows.len() > study::MOST_ROWS {
             context.note(format_args!(
                 "{} of {} rows are shown; --out DIR writes them all, with figures",

@@ -1,7 +1,7 @@
 //! `impactcheck uncertainty`: how the results scatter with the inputs.
 
-use super::asked_model;
 use super::progress::Counter;
+use super::requested_model;
 use super::{Context, JsonArgument};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
@@ -10,7 +10,9 @@ use crate::kinds::{KINDS, Use};
 use crate::report::{self, FigureFile, figure_format};
 use crate::scene::{self, Model, Template, suggestion};
 use crate::table_format::TableFormat;
-use crate::uncertainty::{QuantityScatter, Request, Samples, Scatter, Share, study, uncertainty_of};
+use crate::uncertainty::{
+    PropagatedUncertainty, QuantityUncertainty, Request, Samples, Share, study, uncertainty_of,
+};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -29,7 +31,7 @@ pub struct Arguments {
     #[arg(long, default_value = "auto", value_name = "N|auto", value_parser = samples)]
     samples: RowCount,
     /// Accuracy of auto: half width of the 95 % intervals of mean and standard deviation, over the standard deviation
-    #[arg(long, default_value = "2%", value_name = "SHARE", value_parser = asked_model::tolerance)]
+    #[arg(long, default_value = "2%", value_name = "SHARE", value_parser = requested_model::tolerance)]
     accuracy: f64,
     /// Quantities of auto and of the tables
     #[arg(long = "quantity", value_delimiter = ',', default_value = "efficiency,outer_force_peak,inner_force_peak", value_name = "NAME,…", value_parser = quantity)]
@@ -98,62 +100,62 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
             RowCount::Auto => Samples::Until(arguments.accuracy),
             RowCount::Rows(rows) => Samples::Rows(rows),
         },
-        wanted: arguments.quantities.clone(),
+        quantities: arguments.quantities.clone(),
         seed: arguments.seed,
     };
     let counter = Counter::new(context, &template.scene().name);
     let folder = arguments.out.as_deref().map(|dir| (dir, arguments.format));
-    let scatter = study((&file, &template), &request, folder, &|progress| counter.show(progress))?;
+    let propagated = study((&file, &template), &request, folder, &|progress| counter.show(progress))?;
     let (_, fresh) = counter.finish();
     let seconds = start.elapsed().as_secs_f64();
     context.note(format_args!(
         "{} samples, {} impacts, {fresh} of them run now, in {seconds:.2} s",
-        scatter.samples, scatter.impacts
+        propagated.samples, propagated.impacts
     ));
-    for note in &scatter.notes {
+    for note in &propagated.notes {
         context.note(format_args!("note: {note}"));
     }
     let drawn = (figure.is_some() || arguments.out.is_some())
-        .then(|| report::scatter_figure(&scatter, &request.wanted));
+        .then(|| report::propagation_figure(&propagated, &request.quantities));
     if let (Some((file, format)), Some(svg)) = (figure, &drawn) {
-        let figure = FigureFile { title: scatter.scene.clone(), svg: svg.clone() };
+        let figure = FigureFile { title: propagated.scene.clone(), svg: svg.clone() };
         write_file(file, &format.bytes(&figure)?)?;
     }
     if let (Some(folder), Some(svg)) = (&arguments.out, drawn) {
-        let json = serde_json::to_string_pretty(&scatter)
+        let json = serde_json::to_string_pretty(&propagated)
             .map_err(|e| Error::Internal(format!("writing the results as JSON: {e}")))?;
         write_file(&folder.join("uncertainty.json"), (json + "\n").as_bytes())?;
         write_file(&folder.join("uncertainty.png"), &crate::plot::png(&svg, 2.0)?)?;
         write_file(&folder.join("uncertainty.svg"), svg.as_bytes())?;
         context.note(format_args!("wrote {}", folder.join("uncertainty.svg").display()));
     }
-    arguments.json.print(&scatter, |_| table(&scatter, &request.wanted))?;
+    arguments.json.print(&propagated, |_| table(&propagated, &request.quantities))?;
     Ok(ExitStatus::Pass)
 }
 
-fn table(scatter: &Scatter, wanted: &[String]) -> String {
+fn table(propagated: &PropagatedUncertainty, quantities: &[String]) -> String {
     let mut lines = vec![format!(
         "{} (model {}): {} samples of {} inputs",
-        scatter.scene,
-        scatter.model,
-        scatter.samples,
-        scatter.inputs.len()
+        propagated.scene,
+        propagated.model,
+        propagated.samples,
+        propagated.inputs.len()
     )];
-    for (name, input) in &scatter.inputs {
+    for (name, input) in &propagated.inputs {
         let to = prefixed(input.unit, input.nominal);
         let [nominal, deviation] =
             [(input.nominal, 6), (input.standard_deviation, 3)].map(|(v, n)| with_unit(v, to, n));
         lines.push(format!("  {name:<36} {nominal:>14} ± {deviation}"));
     }
-    for name in wanted {
-        if let Some(of) = scatter.quantities.get(&**name) {
+    for name in quantities {
+        if let Some(of) = propagated.quantities.get(&**name) {
             lines.extend(of_quantity(name, of));
         }
     }
     lines.join("\n")
 }
 
-fn of_quantity(name: &str, of: &QuantityScatter) -> Vec<String> {
+fn of_quantity(name: &str, of: &QuantityUncertainty) -> Vec<String> {
     let to = prefixed(of.unit, of.mean);
     let shown = |value: f64, digits| with_unit(value, to, digits);
     let [low, high] = of.interval();

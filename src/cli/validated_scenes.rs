@@ -11,7 +11,7 @@ use crate::validated::{self, Validation};
 /// there. A file that can't be used is told of: the comparison stands without it.
 pub(super) fn known(context: &Context, found: &[(&Stored, Vec<Validation>)]) -> Vec<Validation> {
     let store = context.store();
-    let told = |result: Result<Vec<Validation>>| {
+    let or_warning = |result: Result<Vec<Validation>>| {
         result.unwrap_or_else(|error| {
             context.note(format_args!("the map of compared scenes is not complete: {error}"));
             Vec::new()
@@ -22,10 +22,10 @@ pub(super) fn known(context: &Context, found: &[(&Stored, Vec<Validation>)]) -> 
         .filter(|(stored, _)| stored.folder.starts_with(store.root()))
         .flat_map(|(_, validations)| validations.clone())
         .collect();
-    let mut known = told(validated::shipped());
+    let mut known = or_warning(validated::shipped());
     validated::merge(
         &mut known,
-        &told(validated::update(&store, &own).and_then(|()| validated::of_store(&store))),
+        &or_warning(validated::update(&store, &own).and_then(|()| validated::of_store(&store))),
     );
     for (_, validations) in found {
         validated::merge(&mut known, validations);

@@ -25,7 +25,7 @@ pub(super) fn watch(files: &[PathBuf], job: impl Fn() -> Result<ExitStatus>) -> 
         let status = match job() {
             Err(error @ Error::Usage(_)) if first => return Err(error),
             Err(error) => {
-                super::tell(describe(&error));
+                super::notify(describe(&error));
                 error.exit_status()
             }
             Ok(status) => status,
@@ -33,7 +33,7 @@ pub(super) fn watch(files: &[PathBuf], job: impl Fn() -> Result<ExitStatus>) -> 
         interrupt::ends_with(status as u8);
         first = false;
         let now = chrono::Utc::now().format("%H:%M:%S UTC");
-        super::print(&format!("{now}: watching {}; Ctrl-C ends", told(files)))?;
+        super::print(&format!("{now}: watching {}; Ctrl-C ends", names(files)))?;
         wait_for_change(files, seen);
     }
 }
@@ -59,7 +59,7 @@ fn stamps(files: &[PathBuf]) -> Vec<Stamp> {
     files.iter().map(stamp).collect()
 }
 
-fn told(files: &[PathBuf]) -> String {
+fn names(files: &[PathBuf]) -> String {
     let name = |file: &Path| file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     match files {
         [file] => name(file),

@@ -170,18 +170,18 @@ impl Discrepancy {
     }
 
     /// Whether a tolerance is undecided because the reference has no value for it.
-    pub fn lacks_reference(&self) -> bool {
+    pub fn has_no_reference(&self) -> bool {
         self.verdict == Verdict::Undecided && self.reference.is_none()
     }
 
     /// Whether the scene states a tolerance for it.
     pub fn is_gated(&self) -> bool {
-        self.tolerance.is_some() || self.lacks_reference()
+        self.tolerance.is_some() || self.has_no_reference()
     }
 
     /// Whether the row stops at the gate: where tolerances are required, each needs a value to be compared with.
     pub fn is_refused(&self, rules: GateRules) -> bool {
-        rules.refuse(self.verdict) || (rules.require_tolerances && self.lacks_reference())
+        rules.refuse(self.verdict) || (rules.require_tolerances && self.has_no_reference())
     }
 
     /// The row judged by the 95 % band of the difference itself, of half width `band`.
@@ -228,7 +228,7 @@ impl Discrepancy {
     }
 
     /// Whether people have to be told of the row: it fails or is undecided.
-    pub fn is_told(&self) -> bool {
+    pub fn is_reported(&self) -> bool {
         matches!(self.verdict, Verdict::Fail | Verdict::Undecided)
     }
 

@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn every_impact_is_held_against_the_reference_by_one_bound() {
+    fn every_impact_is_compared_with_the_reference_by_one_bound() {
         let bound = |width| Tolerance { relative: Some(width), ..Tolerance::default() };
         let (theirs, ours) = (impact(0.65, 5e-5, Some(5e-6)), impact(0.66, 5.4e-5, None));
         let verdict = |width| {
@@ -89,9 +89,9 @@ mod tests {
         assert_eq!((rows[0].verdict, rows[0].uncertainty), (Verdict::Pass, Some(0.001)));
         assert_eq!(verdict(0.01)[0].verdict, Verdict::Fail);
         // what the contacts keep: the model does not tell what is locked in
-        let kept = &rows[3];
-        assert_eq!(kept.quantity, "impact_2_kept_energy");
-        assert!((kept.difference.unwrap() + 1e-6).abs() < 1e-12 && kept.uncertainty == Some(2e-6 + 1e-6));
+        let energy = &rows[3];
+        assert_eq!(energy.quantity, "impact_2_kept_energy");
+        assert!((energy.difference.unwrap() + 1e-6).abs() < 1e-12 && energy.uncertainty == Some(2e-6 + 1e-6));
         assert_eq!(rows[1].verdict, Verdict::NotGated, "a peak that neither side tells is no failure");
     }
 

@@ -9,8 +9,8 @@ use crate::curves::{CommonAxis, CurveMetrics, align};
 use crate::measured::Measured;
 use crate::result::{FlightSummary, Outcome, Summary};
 use crate::scene::{Scene, Tolerances};
-use crate::uncertainty::Scatter;
-use crate::uncertainty::validation::{self, Assessment, numerical, scatter_of};
+use crate::uncertainty::PropagatedUncertainty;
+use crate::uncertainty::validation::{self, Assessment, numerical, propagated_of};
 use std::collections::BTreeMap;
 
 /// Everything that the comparison of one scene is made of: scene, reference and reduced models, and what else is known.
@@ -30,7 +30,7 @@ pub struct ComparisonInput<'a> {
     /// Measured records, aligned with this reference; reported, not gated.
     pub measured: Option<Measured>,
     /// Propagated uncertainty of the scene's inputs, by the name of the model; not gated.
-    pub scatters: BTreeMap<String, Scatter>,
+    pub propagations: BTreeMap<String, PropagatedUncertainty>,
     /// Checks of the reference against the one accepted last; gated.
     pub accepted: Vec<Check>,
     /// Tolerances that differ from those accepted last; reported, not gated.
@@ -54,7 +54,7 @@ impl<'a> ComparisonInput<'a> {
             coarser: None,
             other: None,
             measured: None,
-            scatters: BTreeMap::new(),
+            propagations: BTreeMap::new(),
             accepted: Vec::new(),
             changed_tolerances: Vec::new(),
             budget: Vec::new(),
@@ -135,10 +135,10 @@ impl Comparator<'_> {
         let before =
             self.coarser.as_ref().and_then(|coarser| coarser.model(model)?.discrepancy(&row.quantity));
         let row = row.on_common_mesh(before);
-        let validation = scatter_of(&self.input.scatters, model).and_then(|scatter| {
+        let validation = propagated_of(&self.input.propagations, model).and_then(|propagated| {
             let sides =
                 (numerical(reduced, &row.quantity), row.band().map(|band| band / validation::COVERAGE));
-            Assessment::of(row.difference?, sides, scatter.quantities.get(&*row.quantity)?)
+            Assessment::of(row.difference?, sides, propagated.quantities.get(&*row.quantity)?)
         });
         let would_decide = undecided::advice(&row, &self.input.reference.summary);
         Discrepancy { would_decide, validation, ..row }

@@ -63,7 +63,7 @@ impl Comparison {
     }
 
     /// Whether a model of a scene has given no result at all.
-    pub fn lacks_a_result(&self) -> bool {
+    pub fn has_no_result(&self) -> bool {
         self.scenes.iter().flat_map(|scene| &scene.models).any(|model| model.summary.failure.is_some())
     }
 
@@ -112,7 +112,7 @@ impl SceneComparison {
     /// Tolerances for which the reference has no value, as `MODEL.QUANTITY`.
     pub fn without_reference(&self) -> Vec<String> {
         let of = |model: &ModelComparison| {
-            let rows = model.discrepancies.iter().filter(|row| row.lacks_reference());
+            let rows = model.discrepancies.iter().filter(|row| row.has_no_reference());
             rows.map(|row| format!("{}.{}", model.model, row.quantity)).collect::<Vec<_>>()
         };
         self.models.iter().flat_map(of).collect()

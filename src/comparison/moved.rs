@@ -126,7 +126,7 @@ impl ComparisonDocument {
 /// What changed from `a` to `b` by more than the share `above` of its magnitude.
 pub fn moved<'d>(a: &'d ComparisonDocument, b: &'d ComparisonDocument, above: f64) -> Moves {
     let mut moves = Moves { schema_version: SCHEMA_VERSION, moved: Vec::new(), verdicts: Vec::new() };
-    let mut told = BTreeSet::new();
+    let mut listed = BTreeSet::new();
     let new = b.models().filter(|(scene, model)| a.model(scene, &model.model).is_none());
     for (scene, model) in a.models().chain(new) {
         let [before, after] = [a, b].map(|document| document.model(scene, &model.model));
@@ -163,7 +163,7 @@ pub fn moved<'d>(a: &'d ComparisonDocument, b: &'d ComparisonDocument, above: f6
             let [old_band, band] = both(|row| row.uncertainty);
             let band = band.or(old_band);
             // all models of a scene have the same reference
-            if told.insert((scene, &*row.quantity)) {
+            if listed.insert((scene, &*row.quantity)) {
                 add(REFERENCE, row, band, both(|row| row.reference));
             }
             add(&before.model, row, band, both(|row| row.reduced));
@@ -190,13 +190,13 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_is_told_once_and_what_is_the_same_is_not() {
+    fn a_difference_is_listed_once_and_equal_results_are_not() {
         let a = document(json!([model("B", "pass", 0.5, 0.4), model("C", "pass", 0.4, 0.4)]));
         let b = document(json!([model("B", "fail", 0.6, 0.44), model("C", "pass", 0.4, 0.44)]));
         assert_eq!(moved(&a, &a, 0.0), Moves { moved: vec![], verdicts: vec![], ..moved(&a, &b, 0.0) });
         let moves = moved(&a, &b, 0.0);
-        let told: Vec<_> = moves.moved.iter().map(|m| (&*m.model, m.a, m.b)).collect();
-        assert_eq!(told, [("reference", Some(0.4), Some(0.44)), ("B", Some(0.5), Some(0.6))]);
+        let found: Vec<_> = moves.moved.iter().map(|m| (&*m.model, m.a, m.b)).collect();
+        assert_eq!(found, [("reference", Some(0.4), Some(0.44)), ("B", Some(0.5), Some(0.6))]);
         assert!((moves.moved[1].relative.expect("a share") - 0.2).abs() < 1e-12);
         assert_eq!(moves.verdicts.len(), 1);
         assert_eq!(
@@ -207,12 +207,13 @@ mod tests {
     }
 
     #[test]
-    fn a_model_that_only_one_has_is_told_as_such() {
+    fn a_model_in_only_one_document_is_reported_as_such() {
         let a = document(json!([model("B", "pass", 0.5, 0.4)]));
         let b = document(json!([model("C", "pass", 0.4, 0.4)]));
         let moves = moved(&a, &b, 0.0);
         assert!(moves.moved.is_empty());
-        let told: Vec<_> = moves.verdicts.iter().map(|v| (&*v.model, v.a.is_some(), v.b.is_some())).collect();
-        assert_eq!(told, [("B", true, false), ("C", false, true)]);
+        let found: Vec<_> =
+            moves.verdicts.iter().map(|v| (&*v.model, v.a.is_some(), v.b.is_some())).collect();
+        assert_eq!(found, [("B", true, false), ("C", false, true)]);
     }
 }

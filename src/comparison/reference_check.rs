@@ -110,7 +110,7 @@ mod tests {
 
     /// 3 and 4 make 5, a difference is within that or beyond it; what one side leaves open is no row.
     #[test]
-    fn bands_are_joined_as_independent_and_one_row_beyond_decides() {
+    fn uncertainties_are_combined_as_independent_and_one_row_beyond_decides() {
         let (mut own, mut other) = (stored(), stored());
         other.model = Some("elsewhere".into());
         assert_eq!(ReferenceCheck::of(&own, &other).verdict, BandVerdict::Within);

@@ -64,10 +64,10 @@ fn curve_distances(
     for Curve { name, unit, .. } in curves {
         let found = aligned.iter().find(|a| a.quantity == *name);
         let peak = found.map_or(f64::NAN, AlignedCurve::peak);
-        let lacks =
+        let is_undetermined =
             |side: &Outcome| side.summary.source == Source::External && side.history.curve(name).is_none();
-        let is_given = !sides.into_iter().any(lacks);
-        let is_judged = !lacks(sides[0]);
+        let is_given = !sides.into_iter().any(is_undetermined);
+        let is_judged = !is_undetermined(sides[0]);
         let distances = [
             ("rms", found.map_or(f64::NAN, AlignedCurve::rms)),
             ("max", found.map_or(f64::NAN, AlignedCurve::largest_difference)),

@@ -102,12 +102,12 @@ mod tests {
     }
 
     #[test]
-    fn a_line_has_its_end_and_no_scatter() {
+    fn a_line_has_its_end_and_no_deviation() {
         let sizes: Vec<f64> = (0..5).map(|k| 1.19_f64.powi(k)).collect();
         let values: Vec<f64> = sizes.iter().map(|h| 2.0 + 0.01 * h.powf(ORDER)).collect();
         assert_relative_eq!(band(&values, &sizes), 0.01, max_relative = 1e-9);
-        let mut scattered = values.clone();
-        scattered[2] += 1e-3;
-        assert!(band(&scattered, &sizes) > 0.011);
+        let mut perturbed = values.clone();
+        perturbed[2] += 1e-3;
+        assert!(band(&perturbed, &sizes) > 0.011);
     }
 }

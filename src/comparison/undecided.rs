@@ -25,7 +25,7 @@ fn targeted_band(reference: &Summary) -> Option<f64> {
 
 /// With the band narrowed to the distance from the bound, the row is decided. All bands shrink alike with the mesh.
 fn sentence(row: &Discrepancy, reached: Option<f64>) -> Option<String> {
-    if row.lacks_reference() {
+    if row.has_no_reference() {
         return Some("the reference has no value of it: use one that has, or remove the tolerance".into());
     }
     let (tolerance, band) = (row.tolerance?, row.band()?);
@@ -72,15 +72,15 @@ mod tests {
     }
 
     #[test]
-    fn the_band_asked_for_decides() {
+    fn the_requested_band_decides() {
         for (reduced, needed, verdict) in [(100.4, 0.6, Verdict::Pass), (101.4, 0.4, Verdict::Fail)] {
-            let told = sentence(&row(reduced, 2.0), Some(0.05)).expect("undecided");
+            let text = sentence(&row(reduced, 2.0), Some(0.05)).expect("undecided");
             assert!(
-                told.starts_with(&format!(
+                text.starts_with(&format!(
                     "an uncertainty of at most {} is needed (now 2.0 N)",
                     with_unit(rounded_down(needed), prefixed("N", 1.0), 2)
                 )),
-                "{told}"
+                "{text}"
             );
             assert_eq!(row(reduced, 2.0).verdict, Verdict::Undecided);
             assert_eq!(row(reduced, 0.99 * needed).verdict, verdict);
@@ -88,8 +88,8 @@ mod tests {
             let exactly: f64 = 1.0 - (reduced - 100.0_f64).abs();
             let target = rounded_down(100.0 * 0.05 * exactly.abs() / 2.0);
             assert!(
-                told.contains(&format!("--target-error {target}% and pass --resolution {target}%")),
-                "{told}"
+                text.contains(&format!("--target-error {target}% and pass --resolution {target}%")),
+                "{text}"
             );
         }
         assert_eq!([0.129, 1.0, 0.0999].map(rounded_down), [0.12, 1.0, 0.099]);
@@ -97,9 +97,9 @@ mod tests {
 
     #[test]
     fn what_no_mesh_gives_is_not_advised() {
-        let told = sentence(&row(100.999, 2.0), Some(0.05)).expect("undecided");
-        assert!(told.contains("which no mesh gives") && !told.contains("--target-error"), "{told}");
-        let told = sentence(&row(100.4, 2.0), None).expect("undecided");
-        assert!(told.ends_with(": take a finer --resolution"), "{told}");
+        let text = sentence(&row(100.999, 2.0), Some(0.05)).expect("undecided");
+        assert!(text.contains("which no mesh gives") && !text.contains("--target-error"), "{text}");
+        let text = sentence(&row(100.4, 2.0), None).expect("undecided");
+        assert!(text.ends_with(": take a finer --resolution"), "{text}");
     }
 }

@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn the_user_says_what_stops_at_the_gate() {
+    fn an_option_sets_what_stops_at_the_gate() {
         let refused = |undecided, require_tolerances| {
             let rules = GateRules { undecided, require_tolerances };
             [Verdict::NotGated, Verdict::Pass, Verdict::Undecided, Verdict::Fail].map(|v| rules.refuse(v))

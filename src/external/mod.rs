@@ -18,12 +18,12 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Lines of a program's standard error that are told.
-const TOLD_LINES: usize = 3;
+const REPORTED_LINES: usize = 3;
 
 /// What `program` makes of `scene`, run in `folder`; it is asked for samples at the distance of `sample_interval` s.
 pub fn run(scene: &Scene, program: &External, folder: &Path, sample_interval: f64) -> Outcome {
     let start = Instant::now();
-    let answered = asked(scene, program, folder, sample_interval);
+    let answered = run_program(scene, program, folder, sample_interval);
     let seconds = start.elapsed().as_secs_f64();
     match answered {
         Ok((mut summary, history)) => {
@@ -49,7 +49,7 @@ pub fn question(scene: &Scene, sample_interval: f64) -> serde_json::Result<Value
     Ok(json!({ "schema_version": SCHEMA_VERSION, "scene": document, "sample_interval": sample_interval }))
 }
 
-fn asked(
+fn run_program(
     scene: &Scene,
     program: &External,
     folder: &Path,
@@ -69,7 +69,7 @@ fn asked(
         Some(_) => answer::read(scene, &program.name, &output)
             .map_err(|why| format!("its answer can't be used: {why}")),
     }
-    .map_err(|reason| reason + &told(&log))
+    .map_err(|reason| reason + &last_lines(&log))
 }
 
 fn cannot_run(program: &External, folder: &Path, error: &std::io::Error) -> String {
@@ -87,9 +87,9 @@ fn cannot_run(program: &External, folder: &Path, error: &std::io::Error) -> Stri
 }
 
 /// The end of the program's messages.
-fn told(log: &str) -> String {
+fn last_lines(log: &str) -> String {
     let lines: Vec<&str> = log.lines().collect();
-    let last = lines[lines.len().saturating_sub(TOLD_LINES)..].join(" | ");
+    let last = lines[lines.len().saturating_sub(REPORTED_LINES)..].join(" | ");
     if last.is_empty() { last } else { format!("; its last messages: {last}") }
 }
 

@@ -103,8 +103,8 @@ mod tests {
         // ends once what it has started has left the group
         let line =
             r#"trap 'echo done; exit' USR1; setsid sh -c "kill -USR1 $$; exec sleep 60" & sleep 20 & wait"#;
-        let held = shell(line).expect_err("its output is open");
-        assert_eq!(held.kind(), ErrorKind::TimedOut);
+        let failed = shell(line).expect_err("its output is open");
+        assert_eq!(failed.kind(), ErrorKind::TimedOut);
         assert!(start.elapsed() < Duration::from_secs(50));
     }
 }

@@ -12,8 +12,8 @@ use crate::error::{Error, Result};
 use crate::kinds;
 use crate::result::{CUT, Curve, Outcome, Summary};
 use crate::scene::Scene;
-use crate::uncertainty::Scatter;
-use crate::uncertainty::validation::{Assessment, numerical, scatter_of};
+use crate::uncertainty::PropagatedUncertainty;
+use crate::uncertainty::validation::{Assessment, numerical, propagated_of};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ pub struct Measured {
     /// Efficiency over the records, each impact once; `None` if none of them shows one.
     pub efficiency: Option<Series>,
     /// Reference and models against the first record.
-    pub partners: Vec<Partner>,
+    pub partners: Vec<MeasuredComparison>,
     /// Time axis of the curves.
     pub window: CommonAxis,
     /// The first record on it.
@@ -68,7 +68,7 @@ impl Series {
 
 /// The reference or a model against the measurement.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Partner {
+pub struct MeasuredComparison {
     /// "reference" or the model's name.
     pub partner: String,
     /// Its efficiency; `None` if its run was cut during a contact.
@@ -88,7 +88,7 @@ pub struct Partner {
     pub filtered: Vec<SampledCurve>,
 }
 
-/// Aligns `records` with the reference and compares reference and models with the first of them; `scatters` are the propagated
+/// Aligns `records` with the reference and compares reference and models with the first of them; `propagations` are the propagated
 /// uncertainties of the scene's inputs, by the name of the model, empty if they are certain.
 ///
 /// # Errors
@@ -100,7 +100,7 @@ pub fn compare(
     reference: &Outcome,
     reduced: &[Outcome],
     (bandwidth, speed): (f64, Speed),
-    scatters: &BTreeMap<String, Scatter>,
+    propagations: &BTreeMap<String, PropagatedUncertainty>,
 ) -> Result<Measured> {
     let kind = kinds::of(scene);
     let approach = kind.approach(scene)?;
@@ -136,8 +136,9 @@ pub fn compare(
                     Some(SampledCurve { quantity, values })
                 })
                 .collect();
-            let (validation, area) = efficiency.assessed(&outcome.summary, scatter_of(scatters, partner));
-            Ok(Partner {
+            let (validation, area) =
+                efficiency.assessed(&outcome.summary, propagated_of(propagations, partner));
+            Ok(MeasuredComparison {
                 partner: partner.to_owned(),
                 efficiency: outcome.summary.value("efficiency"),
                 efficiency_difference: efficiency.difference(&outcome.summary),
@@ -168,9 +169,9 @@ impl Efficiency {
             let count = series.count as f64;
             let bands = impacts().filter_map(|record| record.efficiency_uncertainty);
             let noise = bands.map(|band| (band / NORMAL_95).powi(2)).sum::<f64>() / count;
-            let scatter = series.standard_deviation.map_or(0.0, |deviation| deviation.powi(2));
+            let variance = series.standard_deviation.map_or(0.0, |deviation| deviation.powi(2));
             // the scatter has the noise in it already
-            Some((scatter.max(noise) / count).sqrt()).filter(|u| *u > 0.0)
+            Some((variance.max(noise) / count).sqrt()).filter(|u| *u > 0.0)
         });
         Efficiency { series, u_d }
     }
@@ -180,15 +181,19 @@ impl Efficiency {
         Some(summary.value("efficiency")? - self.series.as_ref()?.mean)
     }
 
-    /// What the difference of a result shows, given its propagated input uncertainty `scatter`, and the area between both
+    /// What the difference of a result shows, given its propagated input uncertainty `propagated`, and the area between both
     /// distributions.
-    fn assessed(&self, summary: &Summary, scatter: Option<&Scatter>) -> (Option<Assessment>, Option<Area>) {
-        let scatter = scatter.and_then(|scatter| scatter.quantities.get("efficiency"));
-        let Some((error, scatter)) = self.difference(summary).zip(scatter) else { return (None, None) };
-        let assessment = Assessment::of(error, (numerical(summary, "efficiency"), self.u_d), scatter);
+    fn assessed(
+        &self,
+        summary: &Summary,
+        propagated: Option<&PropagatedUncertainty>,
+    ) -> (Option<Assessment>, Option<Area>) {
+        let propagated = propagated.and_then(|propagated| propagated.quantities.get("efficiency"));
+        let Some((error, propagated)) = self.difference(summary).zip(propagated) else { return (None, None) };
+        let assessment = Assessment::of(error, (numerical(summary, "efficiency"), self.u_d), propagated);
         // the distribution about the result itself
-        let shift = summary.value("efficiency").unwrap_or(f64::NAN) - scatter.nominal.unwrap_or(f64::NAN);
-        let moved: Vec<f64> = scatter.values.iter().map(|value| value + shift).collect();
+        let shift = summary.value("efficiency").unwrap_or(f64::NAN) - propagated.nominal.unwrap_or(f64::NAN);
+        let moved: Vec<f64> = propagated.values.iter().map(|value| value + shift).collect();
         let values = self.series.as_ref().map_or(&[][..], |series| &series.values);
         (assessment, Area::between(&moved, values).filter(|area| area.area.is_finite()))
     }

@@ -32,10 +32,10 @@ fn of(records: &[AlignedRecord], k: usize) -> (bool, Option<Finding>) {
             format!("the record is the same as {}, noise included; it is not used", first.file.display());
         return (true, Some(finding(effect)));
     }
-    let lacks = |record: &AlignedRecord, body: &str| {
+    let gaps = |record: &AlignedRecord, body: &str| {
         record.signals.iter().all(|signal| !signal.quantity.starts_with(body))
     };
-    let other = records.iter().find(|other| lacks(record, "inner") && lacks(other, "outer"));
+    let other = records.iter().find(|other| gaps(record, "inner") && gaps(other, "outer"));
     let effect = |other: &AlignedRecord| {
         finding(format!(
             "the record shows only the outer body and {} only the inner one: if that is one impact, put all signals into one file",

@@ -65,7 +65,7 @@ impl FreeFlight {
             return Some(FreeFlightFit {
                 level: found.coefficients[0],
                 slope: 0.0,
-                noise: found.scatter,
+                noise: found.deviation,
                 step: None,
             });
         }
@@ -75,7 +75,7 @@ impl FreeFlight {
                 self.before.iter().map(row(0.0)).chain(self.after.iter().map(row(1.0))).collect();
             let found = fit(&rows)?;
             let [level, slope, step] = found.coefficients;
-            return Some(FreeFlightFit { level, slope, noise: found.scatter, step: Some(step) });
+            return Some(FreeFlightFit { level, slope, noise: found.deviation, step: Some(step) });
         }
         let line = |side: &[(f64, f64)]| {
             let rows: Vec<([f64; 2], f64)> = side.iter().map(|(t, y)| ([1.0, *t], *y)).collect();
@@ -84,7 +84,7 @@ impl FreeFlight {
         let before = line(&self.before)?;
         let [level, slope] = before.coefficients;
         let step = line(&self.after).map(|after| after.coefficients[1] - slope);
-        Some(FreeFlightFit { level, slope, noise: before.scatter, step })
+        Some(FreeFlightFit { level, slope, noise: before.deviation, step })
     }
 
     /// Standard errors; `None` if there is too little free flight. `bandwidth` in Hz.

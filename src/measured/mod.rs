@@ -20,7 +20,7 @@ mod structure;
 
 pub use align::{AlignedRecord, ChannelCorrection, ContactEnds, Speed, align, align_all};
 pub use area::Area;
-pub use compare::{Measured, Partner, Series, compare};
+pub use compare::{Measured, MeasuredComparison, Series, compare};
 pub use filter::{Filtered, low_pass};
 pub use finding::{Finding, FindingKind};
 pub use record::{Channel, Record};

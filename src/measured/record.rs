@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_record_is_told_with_its_place() {
+    fn an_invalid_record_is_reported_with_its_place() {
         let good = "time [us],outer_velocity [mm/s],inner_velocity [mm/s]";
         let row = |k: usize, text: &str| {
             let text = text.to_owned();

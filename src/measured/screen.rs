@@ -15,7 +15,7 @@ const OFTENER: usize = 4;
 /// Part of neighbouring samples that may be equal in a signal whose resolution shows its noise.
 const EQUAL: f64 = 0.02;
 /// Part of the samples at which the curvature changes its sign: more than a smooth course has.
-const ROUGH: f64 = 0.08;
+const COARSE_SCALE: f64 = 0.08;
 /// Fewest neighbouring samples from which that is judged.
 const PAIRS: u32 = 20;
 /// Jump of a signal into zeros that no body makes, over the signal's span.
@@ -104,11 +104,11 @@ pub(crate) fn extremes(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)))
 }
 
-/// Whether the signal has noise that its resolution shows, apart from the samples `left_out`: equal ones are then no chance.
-fn shows_noise(values: &[f64], left_out: impl Fn(usize) -> bool) -> bool {
+/// Whether the signal has noise that its resolution shows, apart from the samples `omitted`: equal ones are then no chance.
+fn shows_noise(values: &[f64], omitted: impl Fn(usize) -> bool) -> bool {
     let (mut pairs, mut equal, mut bends, mut last) = (0, 0, 0, 0.0);
     for k in 2..values.len() {
-        if left_out(k) || left_out(k - 1) || left_out(k - 2) {
+        if omitted(k) || omitted(k - 1) || omitted(k - 2) {
             continue;
         }
         pairs += 1;
@@ -118,7 +118,7 @@ fn shows_noise(values: &[f64], left_out: impl Fn(usize) -> bool) -> bool {
         last = bend;
     }
     let part = |count: usize| count as f64 / f64::from(pairs);
-    pairs >= PAIRS && part(equal) < EQUAL && part(bends) > ROUGH
+    pairs >= PAIRS && part(equal) < EQUAL && part(bends) > COARSE_SCALE
 }
 
 fn clipped(time: &[f64], channel: &Channel) -> Option<Finding> {

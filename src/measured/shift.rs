@@ -67,7 +67,7 @@ impl Alignment<'_> {
                     .step_by(stride)
                     .map(|i| ([1.0], sign * channel.values[i] - curve(time[i] - shift)))
                     .collect();
-                squares += fit(&rows).map_or(1.0, |found| (found.scatter / span).powi(2));
+                squares += fit(&rows).map_or(1.0, |found| (found.deviation / span).powi(2));
                 // without its rise an impact looks like free flight, of which there is plenty
                 missing += 1.0 - ((last - shift) / (RISE * end)).min(1.0);
             }
@@ -138,8 +138,9 @@ impl CostFunction for Misfit<'_> {
             let Some(curve) = self.model.curve(quantity) else { continue };
             let row = |(t, y): &(f64, f64)| ([1.0, *t, curve(t - further)], *y);
             let rows: Vec<([f64; 3], f64)> = points.iter().map(row).collect();
-            total += fit(&rows)
-                .map_or(rows.len() as f64, |found| (rows.len() - 3) as f64 * (found.scatter / scale).powi(2));
+            total += fit(&rows).map_or(rows.len() as f64, |found| {
+                (rows.len() - 3) as f64 * (found.deviation / scale).powi(2)
+            });
         }
         Ok(total)
     }

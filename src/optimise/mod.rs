@@ -184,10 +184,10 @@ impl Problem {
         let varied = variables.iter().flat_map(|variable| {
             variable.fields.iter().map(|field| (field.path(), [variable.low, variable.high]))
         });
-        let scattered = robust.as_ref().map_or_else(Vec::new, |robust| robust.ranges(&variables));
+        let perturbed = robust.as_ref().map_or_else(Vec::new, |robust| robust.ranges(&variables));
         let impacts = if robust.is_some() { IMPACTS * robust::SAMPLES } else { IMPACTS };
         // the first that names a field is believed
-        let ranges = scattered.into_iter().chain(varied);
+        let ranges = perturbed.into_iter().chain(varied);
         let scene = template.scene();
         if !kinds::of(scene).models().contains(&model) {
             return Err(Error::Usage(format!("--model {model}: {}", kinds::models_only(scene))));
@@ -233,7 +233,7 @@ impl Problem {
 
     /// Relative error that the time integration may have.
     fn tolerance(&self) -> f64 {
-        if self.series.is_dear() { EXPENSIVE_TOLERANCE } else { TOLERANCE }
+        if self.series.is_expensive() { EXPENSIVE_TOLERANCE } else { TOLERANCE }
     }
 
     fn model(&self, values: &[f64]) -> Result<Box<dyn SeriesModel>> {
@@ -273,9 +273,9 @@ impl Problem {
     /// [`Error::Solver`] if no scene within the bounds has a result.
     pub fn solve(&self, seed: u64, samples: Option<usize>, watch: &Watch) -> Result<Optimum> {
         let dimensions = self.variables.len();
-        let search = match self.series.is_dear() {
+        let search = match self.series.is_expensive() {
             false => Search { resolution: RESOLUTION, ..Search::of_dimensions(dimensions) },
-            true => Search::of_dear(dimensions),
+            true => Search::of_expensive(dimensions),
         };
         let search = Search { seed, samples: samples.unwrap_or(search.samples), ..search };
         let place = |s: &[f64]| -> Vec<f64> {
@@ -320,7 +320,7 @@ impl Problem {
             there[k] = x;
             worth(&there)
         };
-        let points = if self.series.is_dear() { DEAR_POINTS } else { PROFILE_POINTS };
+        let points = if self.series.is_expensive() { DEAR_POINTS } else { PROFILE_POINTS };
         let variables = (0..dimensions)
             .into_par_iter()
             .map(|k| Neighbourhood::of(&self.variables[k], values[k], best, points, |x| at(k, x)))

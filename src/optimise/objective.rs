@@ -100,8 +100,8 @@ mod tests {
         assert_eq!(Objective::of(None, None, plate.scene()).unwrap(), Objective::Quantity("efficiency", "1"));
         assert_eq!(Objective::of(Some("inner_force_peak"), None, plate.scene()).unwrap().unit(), "N");
         for name in ["intended_speed", "outer_contacts", "sphere_speed"] {
-            let told = Objective::of(Some(name), None, plate.scene()).unwrap_err().to_string();
-            assert!(told.contains(name) && told.contains("efficiency"), "{told}");
+            let message = Objective::of(Some(name), None, plate.scene()).unwrap_err().to_string();
+            assert!(message.contains(name) && message.contains("efficiency"), "{message}");
         }
     }
 }

@@ -71,9 +71,9 @@ impl Robust {
         let inputs = self.inputs.about(designed);
         let sample = |k: usize| {
             // one sequence, which is more even than parts of several
-            let scattered = inputs.place(&inputs.design().at(k * REPLICATES, Point::A));
+            let perturbed = inputs.place(&inputs.design().at(k * REPLICATES, Point::A));
             let all: Vec<(&Field, f64)> =
-                numbers.iter().copied().chain(self.fields.iter().zip(scattered)).collect();
+                numbers.iter().copied().chain(self.fields.iter().zip(perturbed)).collect();
             objective(&all)
         };
         let mut values = (0..SAMPLES).map(sample).collect::<Option<Vec<f64>>>()?;
@@ -95,7 +95,7 @@ mod tests {
 
     /// A normal thickness of 1 % of the design: the 5 % quantile of the thickness itself lies 1.645 % below.
     #[test]
-    fn the_scatter_goes_with_the_design() {
+    fn the_input_uncertainty_moves_with_the_design() {
         let text = format!("{SCENE}\n[uncertainty]\n\"plate.thickness\" = \"1 %\"\n");
         let template = Template::parse("scene", &text).unwrap();
         let robust = Robust::new(&template, 0.05, 1).unwrap();

@@ -42,7 +42,7 @@ impl Search {
     }
 
     /// For a function that takes a second, and has a hill or two.
-    pub fn of_dear(dimensions: usize) -> Self {
+    pub fn of_expensive(dimensions: usize) -> Self {
         Search {
             samples: 12 * dimensions,
             seed: 1,

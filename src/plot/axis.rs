@@ -60,14 +60,14 @@ impl PlotAxis {
         self.value(0.5 * (self.measure(a) + self.measure(b)))
     }
 
-    /// Round numbers, about `wanted` of them; of many decades each second or later one.
-    pub(crate) fn marks(&self, wanted: usize) -> Vec<f64> {
-        let chosen = if self.logarithmic { self.decades(wanted) } else { None };
-        chosen.unwrap_or_else(|| ticks(self.low, self.high, wanted))
+    /// Round numbers, about `count` of them; of many decades each second or later one.
+    pub(crate) fn marks(&self, count: usize) -> Vec<f64> {
+        let chosen = if self.logarithmic { self.decades(count) } else { None };
+        chosen.unwrap_or_else(|| ticks(self.low, self.high, count))
     }
 
     /// Marks of a logarithmic axis; `None` if it is too short for them.
-    fn decades(&self, wanted: usize) -> Option<Vec<f64>> {
+    fn decades(&self, count: usize) -> Option<Vec<f64>> {
         let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
         let powers = |(every, multiples): (usize, &'static [f64])| -> Vec<f64> {
             let decades = decades.clone().step_by(every);
@@ -76,7 +76,7 @@ impl PlotAxis {
         };
         let candidates =
             std::iter::once((1, &[1.0, 2.0, 5.0][..])).chain((1..8).map(|every| (every, &[1.0][..])));
-        candidates.map(powers).find(|marks| (3..=wanted).contains(&marks.len()))
+        candidates.map(powers).find(|marks| (3..=count).contains(&marks.len()))
     }
 
     /// The number at a mark.
@@ -138,7 +138,7 @@ impl Plot {
 
     /// Numbers at the marks of both axes, what they are of, and the frame.
     pub(crate) fn frame(&self, x_marks: &[f64], y_marks: &[f64], [x_label, y_label]: [&str; 2]) -> Markup {
-        html! { (self.below(x_marks, x_label)) (self.beside(y_marks, y_label)) (self.outline()) }
+        html! { (self.below(x_marks, x_label)) (self.left_labels(y_marks, y_label)) (self.outline()) }
     }
 
     /// Numbers at the marks of the horizontal axis, and what they are of.
@@ -151,7 +151,7 @@ impl Plot {
     }
 
     /// The same of the vertical axis; without a name for an empty `label`.
-    pub(crate) fn beside(&self, marks: &[f64], label: &str) -> Markup {
+    pub(crate) fn left_labels(&self, marks: &[f64], label: &str) -> Markup {
         html! {
             @for y in marks {
                 text x=(self.left - 8.0) y=(x2(self.y(*y) + 0.36 * FONT_SIZE)) text-anchor="end" { (self.y.label(*y, marks)) }

@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_without_a_value_is_left_out_and_scattered_points_are_dots() {
+    fn a_point_without_a_value_is_omitted_and_irregular_points_are_dots() {
         let mut map = plane();
         map.points[0].1 = f64::NAN;
         map.is_grid = false;

@@ -58,7 +58,7 @@ mod tests {
     use super::look;
 
     #[test]
-    fn models_that_are_shown_together_are_told_apart_by_colour_dashes_and_marks() {
+    fn models_that_are_shown_together_differ_in_colour_dashes_and_marks() {
         let models = ["A", "mine", "B", "yours", "C", "hers", "theirs"];
         let looks = models.map(|model| look(model, models));
         for (k, one) in looks.iter().enumerate() {

@@ -50,13 +50,13 @@ pub(crate) fn path_within(line: &[Point], tolerance: f64) -> String {
 
 /// Points of `line` at least `spacing` apart, enough to keep labels away from it.
 pub(crate) fn thinned(line: &[Point], spacing: f64) -> Vec<Point> {
-    let mut kept: Vec<Point> = Vec::new();
+    let mut spaced: Vec<Point> = Vec::new();
     for p in line {
-        if kept.last().is_none_or(|k| (p.0 - k.0).hypot(p.1 - k.1) >= spacing) {
-            kept.push(*p);
+        if spaced.last().is_none_or(|k| (p.0 - k.0).hypot(p.1 - k.1) >= spacing) {
+            spaced.push(*p);
         }
     }
-    kept
+    spaced
 }
 
 #[cfg(test)]

@@ -11,20 +11,20 @@ pub(crate) fn round_below(value: f64) -> f64 {
     [5.0, 2.0].map(|m| m * power).into_iter().find(|m| *m <= value).unwrap_or(power)
 }
 
-/// Marks at multiples of 1, 2 or 5 times a power of ten within `low..=high`, about `wanted` of them, but at least three.
-pub(crate) fn ticks(low: f64, high: f64, wanted: usize) -> Vec<f64> {
+/// Marks at multiples of 1, 2 or 5 times a power of ten within `low..=high`, about `count` of them, but at least three.
+pub(crate) fn ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
     let span = high - low;
     if !(span.is_finite() && span > 0.0) {
         return vec![low];
     }
-    let raw = span / wanted.max(1) as f64;
+    let raw = span / count.max(1) as f64;
     let power = 10_f64.powf(raw.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= raw).unwrap_or(raw);
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;
     let marks: Vec<f64> = (first..=last).map(|k| k as f64 * step).collect();
     // half the step, at most, each time: three marks are there before long
-    if marks.len() < LEAST { ticks(low, high, 2 * wanted.max(1)) } else { marks }
+    if marks.len() < LEAST { ticks(low, high, 2 * count.max(1)) } else { marks }
 }
 
 /// The mark's number with as many decimals as its distance to the others asks for.

@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// [`Error::Usage`] if there is neither; it lists the shipped scenes. As [`project_root`] if they are needed.
 pub fn resolve(argument: &str) -> Result<PathBuf> {
-    let (path, beside) = (PathBuf::from(argument), PathBuf::from(format!("{argument}.toml")));
+    let (path, file) = (PathBuf::from(argument), PathBuf::from(format!("{argument}.toml")));
     if path.is_file() {
         return Ok(path);
     }
     match project_root() {
-        Err(_) if beside.is_file() => Ok(beside),
-        root => resolve_in(&root?.join("scenes"), argument, path, beside),
+        Err(_) if file.is_file() => Ok(file),
+        root => resolve_in(&root?.join("scenes"), argument, path, file),
     }
 }
 
@@ -45,7 +45,7 @@ pub fn every() -> Result<Vec<PathBuf>> {
     Ok(scenes)
 }
 
-fn resolve_in(folder: &Path, argument: &str, path: PathBuf, beside: PathBuf) -> Result<PathBuf> {
+fn resolve_in(folder: &Path, argument: &str, path: PathBuf, file: PathBuf) -> Result<PathBuf> {
     let is_name = !argument.is_empty() && !argument.contains(['/', '\\']);
     for candidate in [format!("{argument}.toml"), argument.to_owned()] {
         let shipped = folder.join(candidate);
@@ -57,8 +57,8 @@ fn resolve_in(folder: &Path, argument: &str, path: PathBuf, beside: PathBuf) -> 
         // A folder, a pipe: what it is worth shows when it is read.
         return Ok(path);
     }
-    if beside.is_file() {
-        return Ok(beside);
+    if file.is_file() {
+        return Ok(file);
     }
     let shipped = scenes_in(folder).unwrap_or_default();
     let names: Vec<&str> = shipped.iter().filter_map(|p| p.file_stem()?.to_str()).collect();

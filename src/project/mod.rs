@@ -36,8 +36,10 @@ pub fn project_root() -> Result<PathBuf> {
     }
     let current = std::env::current_dir().unwrap_or_default();
     let program = std::env::current_exe().and_then(|path| path.canonicalize()).unwrap_or_default();
-    let beside = program.ancestors().skip(1).flat_map(|f| [f.to_path_buf(), f.join("share/impactcheck")]);
-    let found = current.ancestors().map(Path::to_path_buf).chain(beside).find(|folder| is_project(folder));
+    let near_program =
+        program.ancestors().skip(1).flat_map(|f| [f.to_path_buf(), f.join("share/impactcheck")]);
+    let found =
+        current.ancestors().map(Path::to_path_buf).chain(near_program).find(|folder| is_project(folder));
     found.map_or_else(unpacked, Ok)
 }
 

@@ -197,8 +197,8 @@ fn install(interpreter: Option<&Interpreter>, module: &str) -> String {
 
 /// First line a C compiler says about itself.
 fn compiler() -> Option<String> {
-    let asked = std::env::var("CC").ok().filter(|c| !c.is_empty());
-    let names = asked.map_or_else(|| ["cc", "gcc", "clang"].map(str::to_owned).to_vec(), |c| vec![c]);
+    let requested = std::env::var("CC").ok().filter(|c| !c.is_empty());
+    let names = requested.map_or_else(|| ["cc", "gcc", "clang"].map(str::to_owned).to_vec(), |c| vec![c]);
     names.iter().find_map(|name| version_of(name))
 }
 

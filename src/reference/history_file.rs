@@ -46,14 +46,14 @@ fn columns(header: &csv::StringRecord, curves: &[Curve]) -> Option<Vec<HistoryCo
 pub(super) fn read(
     curves: &[Curve],
     path: &Path,
-    may_lack_curves: bool,
+    may_omit_curves: bool,
 ) -> Result<(History, Option<CurveBands>), String> {
     let mut reader = csv::Reader::from_path(path).map_err(|e| format!("can't be read: {e}"))?;
     let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
     if header.is_empty() {
         return Err("has no sample".to_owned());
     }
-    let given = |curve: &&Curve| !may_lack_curves || header.iter().any(|name| name == curve.name);
+    let given = |curve: &&Curve| !may_omit_curves || header.iter().any(|name| name == curve.name);
     let curves: &[Curve] = &curves.iter().filter(given).cloned().collect::<Vec<_>>();
     let columns = columns(&header, curves).ok_or_else(|| {
         let found: Vec<&str> = header.iter().take(12).collect();

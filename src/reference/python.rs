@@ -149,8 +149,8 @@ pub(super) fn fem_reference(python: &Path) -> Result<Command> {
     let mut command = Command::new(python);
     command.args(["-m", "fem_reference"]).current_dir(&root).stdin(Stdio::null());
     // A folder with a colon in its name can't stand in a search path; -m finds the package anyway.
-    if let Ok(joined) = std::env::join_paths(paths) {
-        command.env("PYTHONPATH", joined);
+    if let Ok(search_path) = std::env::join_paths(paths) {
+        command.env("PYTHONPATH", search_path);
     }
     Ok(command)
 }

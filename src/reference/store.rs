@@ -231,11 +231,11 @@ impl Store {
                 Err(e) if e.kind() != ErrorKind::NotFound => return Err(failed(e)),
                 Err(_) => {}
                 Ok(()) => {
-                    let kept = self.keep(work, &aside, scene, resolution, attempt).map_err(|e| {
+                    let earlier_path = self.keep(work, &aside, scene, resolution, attempt).map_err(|e| {
                         let _ = fs::rename(&aside, &folder);
                         failed(e)
                     })?;
-                    earlier = kept.or(earlier);
+                    earlier = earlier_path.or(earlier);
                 }
             }
             // What an earlier change of the scene has left is older. Moved before the new entry is there: another run
@@ -270,17 +270,17 @@ impl Store {
     ) -> std::io::Result<Option<PathBuf>> {
         let Some((scene_hash, settings_hash)) = entry::hashes(aside) else { return Ok(None) };
         let name = earlier_name(resolution, &scene_hash, &settings_hash);
-        let kept = self.folder(scene, resolution).with_file_name(name);
-        if kept == self.earlier_folder(scene, resolution) {
+        let earlier_path = self.folder(scene, resolution).with_file_name(name);
+        if earlier_path == self.earlier_folder(scene, resolution) {
             return Ok(None);
         }
         let older = work.path().join(format!("older-{attempt}"));
-        match fs::rename(&kept, older) {
+        match fs::rename(&earlier_path, older) {
             Err(e) if e.kind() != ErrorKind::NotFound => return Err(e),
             _ => {}
         }
-        fs::rename(aside, &kept)?;
-        Ok(Some(kept))
+        fs::rename(aside, &earlier_path)?;
+        Ok(Some(earlier_path))
     }
 }
 

@@ -25,13 +25,13 @@ pub(crate) fn same_but_for_run_times(one: &[u8], other: &[u8]) -> bool {
 /// The text with its run times left out.
 fn without(text: &str) -> String {
     let mut rest = text;
-    let mut kept = String::with_capacity(text.len());
+    let mut rest_of_text = String::with_capacity(text.len());
     loop {
         let keys = KEYS.iter().filter_map(|key| Some(rest.find(key)? + key.len()));
         let mark = rest.find(MARK[0]).map(|at| at + MARK[0].len());
         let Some(start) = keys.chain(mark).min() else { break };
         let (before, after) = rest.split_at(start);
-        kept += before;
+        rest_of_text += before;
         let length = match Some(start) == mark {
             true => after.find(MARK[1]),
             // a number ends where the next member or the object's end begins
@@ -39,7 +39,7 @@ fn without(text: &str) -> String {
         };
         rest = &after[length.unwrap_or(0)..];
     }
-    kept + rest
+    rest_of_text + rest
 }
 
 #[cfg(test)]

@@ -70,8 +70,8 @@ impl SummaryColumn {
             true => other.map(|other| own - other),
             false => other.filter(|other| *other != 0.0).map(|other| (own - other) / other.abs()),
         };
-        let told = |off: f64| if self.is_angle { degrees(off) } else { percent(Some(off)) };
-        Some(SummaryCell { value, off, off_in_words: off.map(told) })
+        let in_words = |off: f64| if self.is_angle { degrees(off) } else { percent(Some(off)) };
+        Some(SummaryCell { value, off, off_in_words: off.map(in_words) })
     }
 }
 

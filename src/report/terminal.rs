@@ -5,7 +5,7 @@ use crate::format::significant;
 use crate::report::conclusion::{HOLD, assumptions, conclusion, summaries};
 use crate::report::page::section::{measured, validation};
 use crate::report::summary_column::SummaryColumn;
-use crate::report::{Report, kinds, row_told};
+use crate::report::{Report, kinds, row_in_words};
 use crate::result::{Limit, Outcome, Summary};
 use crate::scene::Scene;
 use anstyle::{AnsiColor, Style};
@@ -55,8 +55,8 @@ pub(crate) fn findings(comparison: &SceneComparison) -> String {
         line(&format!("{warning}: {record}"), effect.to_owned());
     }
     for model in &comparison.models {
-        for row in model.discrepancies.iter().filter(|d| d.is_told()) {
-            line(&model.model, row_told(row));
+        for row in model.discrepancies.iter().filter(|d| d.is_reported()) {
+            line(&model.model, row_in_words(row));
         }
         for check in model.integrity.iter().filter(|c| c.verdict.failed()) {
             line(&model.model, check.to_string());

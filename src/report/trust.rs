@@ -58,7 +58,7 @@ fn of_group(group: &[SummaryColumn], model: &ModelComparison) -> Option<String> 
 }
 
 fn phrase(what: &str, several: bool, worst: f64, band: f64, is_angle: bool) -> String {
-    let told = |size: f64| {
+    let shown = |size: f64| {
         if is_angle {
             format!("{:.2}°", (100.0 * size.to_degrees() - 1e-9).ceil() / 100.0)
         } else {
@@ -70,8 +70,8 @@ fn phrase(what: &str, several: bool, worst: f64, band: f64, is_angle: bool) -> S
         (false, true) => "differs by up to",
         (false, false) => "differs by",
     };
-    let band = if band > worst { format!(" (reference ±{})", told(band)) } else { String::new() };
-    format!("{what} {how} {}{band}", told(worst))
+    let band = if band > worst { format!(" (reference ±{})", shown(band)) } else { String::new() };
+    format!("{what} {how} {}{band}", shown(worst))
 }
 
 /// The curve with the largest root mean square distance.
@@ -151,7 +151,7 @@ mod tests {
     use super::{phrase, size_class};
 
     #[test]
-    fn sizes_are_rounded_up_and_told_with_the_band_of_the_reference_where_that_is_wider() {
+    fn sizes_are_rounded_up_and_have_the_uncertainty_of_the_reference_where_that_is_larger() {
         assert_eq!(phrase("efficiency", false, 0.000_186, 0.000_1, false), "efficiency within 0.019 %");
         assert_eq!(phrase("peak force", true, 0.0101, 0.0, false), "peak force differs by up to 1.1 %");
         assert_eq!(phrase("speed", false, 0.0009, 0.021, false), "speed within 0.090 % (reference ±2.1 %)");

@@ -4,13 +4,13 @@ use crate::error::{Error, Result};
 use crate::interrupt::Scratch;
 use crate::report::ci::junit::JUnit;
 use crate::report::ci::markdown::Markdown;
+use crate::report::existing::{self, ExistingScene, Folder};
 use crate::report::export::{Csv, Export, Json};
 use crate::report::page::coverage;
 use crate::report::page::index::Index;
 use crate::report::page::scene::Page;
 use crate::report::page::validated_map::{self, ValidatedMap};
 use crate::report::run_times::same_but_for_run_times;
-use crate::report::standing::{self, Folder, Standing};
 use crate::report::{Report, SceneReport, kinds};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -44,7 +44,7 @@ const OF_SCENE: [&dyn for<'s> Export<SceneReport<'s>>; 2] = [&Csv, &Page];
 /// [`Error::Io`] naming the folder or file; [`Error::Usage`] for scenes whose names can't be file
 /// names or are the same.
 pub fn write(report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
-    let files = files(report, &standing::in_folder(report, dir))?;
+    let files = files(report, &existing::in_folder(report, dir))?;
     for (name, _) in &files {
         let target = dir.join(name);
         if target.is_dir() {
@@ -100,9 +100,9 @@ pub fn check_writable(dir: &Path) -> Result<()> {
 }
 
 /// Name and content of every file.
-fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)>> {
+fn files(report: &Report, existing: &[ExistingScene]) -> Result<Vec<(String, Vec<u8>)>> {
     let mut names = BTreeSet::new();
-    let folder = Folder { report, scenes: standing };
+    let folder = Folder { report, scenes: existing };
     let file = |(stem, format): (&str, &OfFolder)| {
         Ok((format!("{stem}.{}", format.ending()), format.bytes(&folder)?))
     };
@@ -111,7 +111,7 @@ fn files(report: &Report, standing: &[Standing]) -> Result<Vec<(String, Vec<u8>)
         files.push((validated_map::FILE.to_owned(), map.svg().into_bytes()));
     }
     if let Some(coverage) = report.coverage() {
-        files.push((coverage::FILE.to_owned(), coverage::of(coverage, standing).into_bytes()));
+        files.push((coverage::FILE.to_owned(), coverage::of(coverage, existing).into_bytes()));
     }
     for scene in &report.scenes {
         let name = &scene.comparison.scene;

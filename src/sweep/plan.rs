@@ -105,8 +105,8 @@ impl Plan {
         })?;
         let file: File =
             toml::from_str(&text).map_err(|e| invalid(path, &format!("is no sweep file: {e}")))?;
-        let beside = path.parent().unwrap_or(Path::new("")).join(&file.scene);
-        let scene = if beside.is_file() { beside } else { scene::resolve(&file.scene)? };
+        let near_plan = path.parent().unwrap_or(Path::new("")).join(&file.scene);
+        let scene = if near_plan.is_file() { near_plan } else { scene::resolve(&file.scene)? };
         Self::new(path, file, scene.clone(), Template::read(&scene)?)
     }
 
@@ -351,8 +351,8 @@ impl Plan {
     }
 
     /// Whether every point takes tenths of a second.
-    pub(super) fn is_dear(&self) -> bool {
-        self.series.is_dear()
+    pub(super) fn is_expensive(&self) -> bool {
+        self.series.is_expensive()
     }
 
     /// Runs point `index`. A scene that is not valid and a solver that fails are results too.

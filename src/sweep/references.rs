@@ -17,9 +17,9 @@ pub struct Known {
 
 /// The references of scenes beside the swept one and of shipped ones that lie within the ranges of `plan`, each once.
 pub fn references(plan: &Plan, store: &Store) -> Vec<Known> {
-    let beside = plan.scene_file().parent().unwrap_or(Path::new(""));
-    let beside = std::fs::read_dir(if beside.as_os_str().is_empty() { Path::new(".") } else { beside });
-    let files = beside.into_iter().flatten().flatten().map(|entry| entry.path());
+    let folder = plan.scene_file().parent().unwrap_or(Path::new(""));
+    let folder = std::fs::read_dir(if folder.as_os_str().is_empty() { Path::new(".") } else { folder });
+    let files = folder.into_iter().flatten().flatten().map(|entry| entry.path());
     let mut files: Vec<PathBuf> =
         files.filter(|path| path.extension().is_some_and(|e| e == "toml")).collect();
     files.extend(crate::scene::every().unwrap_or_default());

@@ -67,26 +67,26 @@ pub enum Progress {
     Recorded(usize),
 }
 
-/// Runs the points of `shard` that have no record in `dir` yet; `tell` hears of the progress.
+/// Runs the points of `shard` that have no record in `dir` yet; `on_progress` hears of the progress.
 ///
 /// # Errors
 /// [`Error::Usage`] if `dir` belongs to another sweep or the shard is running already, [`Error::Io`] if a record can't
 /// be written.
-pub fn run(plan: &Plan, dir: &Path, shard: Shard, tell: &(dyn Fn(Progress) + Sync)) -> Result<()> {
+pub fn run(plan: &Plan, dir: &Path, shard: Shard, on_progress: &(dyn Fn(Progress) + Sync)) -> Result<()> {
     fs::create_dir_all(dir).map_err(|e| Error::io("creating", dir, e))?;
     let done = read_all(plan, dir)?;
     let points = (0..plan.len()).filter(|index| shard.contains(*index));
     let (finished, pending): (Vec<usize>, Vec<usize>) = points.partition(|index| done[*index].is_some());
-    tell(Progress::Start { points: finished.len() + pending.len(), done: finished.len() });
+    on_progress(Progress::Start { points: finished.len() + pending.len(), done: finished.len() });
     let log = Log::open(plan, dir, shard)?;
-    pending.par_chunks(if plan.is_dear() { 1 } else { BATCH }).try_for_each(|chunk| {
+    pending.par_chunks(if plan.is_expensive() { 1 } else { BATCH }).try_for_each(|chunk| {
         let (mut text, mut count, mut since) = (String::new(), 0, Instant::now());
         for (k, index) in chunk.iter().enumerate() {
             plan.evaluate(*index).append_to(&mut text);
             count += 1;
             if k + 1 == chunk.len() || since.elapsed() > PATIENCE {
                 log.append(&text)?;
-                tell(Progress::Recorded(count));
+                on_progress(Progress::Recorded(count));
                 text.clear();
                 (count, since) = (0, Instant::now());
             }
@@ -97,11 +97,11 @@ pub fn run(plan: &Plan, dir: &Path, shard: Shard, tell: &(dyn Fn(Progress) + Syn
 }
 
 /// Runs points number `from` and later, and keeps their records in memory alone.
-pub fn in_memory(plan: &Plan, from: usize, tell: &(dyn Fn(Progress) + Sync)) -> Vec<Record> {
-    tell(Progress::Start { points: plan.len(), done: from });
+pub fn in_memory(plan: &Plan, from: usize, on_progress: &(dyn Fn(Progress) + Sync)) -> Vec<Record> {
+    on_progress(Progress::Start { points: plan.len(), done: from });
     let run = |index| {
         let record = plan.evaluate(index);
-        tell(Progress::Recorded(1));
+        on_progress(Progress::Recorded(1));
         record
     };
     (from..plan.len()).into_par_iter().map(run).collect()

@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn impacts_are_told_apart_by_their_number() {
+    fn impacts_are_distinguished_by_their_number() {
         let inputs = inputs();
         assert_eq!(inputs.numbers(NOMINAL), [2.0, 5.0, 3.0]);
         assert_eq!(inputs.numbers(Inputs::moved(0, 0)), [1.8, 5.0, 3.0]);

@@ -1,17 +1,17 @@
 //! Uncertain inputs: how the results of a reduced model scatter with the inputs of a scene, and what that means for a comparison.
 //!
 //! [`study`] runs the model at quasi-random inputs ([`design`]), in the logs of a sweep; [`estimate`] has the estimators, which know
-//! nothing of impacts; [`Scatter`] is what comes out.
+//! nothing of impacts; [`PropagatedUncertainty`] is what comes out.
 
 pub mod design;
 mod draw;
 pub mod estimate;
+mod propagated;
 mod request;
-mod scatter;
 mod study;
 pub mod validation;
 
 pub use draw::Inputs;
-pub use request::{Request, Samples, WANTED};
-pub use scatter::{Correlated, Input, Local, QuantityScatter, Scatter, Share};
+pub use propagated::{Correlated, Input, Local, PropagatedUncertainty, QuantityUncertainty, Share};
+pub use request::{DEFAULT_QUANTITIES, Request, Samples};
 pub use study::{study, uncertainty_of};

@@ -3,14 +3,14 @@
 use crate::scene::Model;
 
 /// Quantities whose scatter is wanted when nobody names others.
-pub const WANTED: [&str; 3] = ["efficiency", "outer_force_peak", "inner_force_peak"];
+pub const DEFAULT_QUANTITIES: [&str; 3] = ["efficiency", "outer_force_peak", "inner_force_peak"];
 
 /// How much to sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Samples {
     /// So many rows.
     Rows(usize),
-    /// Twice as many again and again, until the 95 % intervals of mean and standard deviation of the wanted quantities are no wider than
+    /// Twice as many again and again, until the 95 % intervals of mean and standard deviation of the requested quantities are no wider than
     /// this share of the standard deviation to either side.
     Until(f64),
 }
@@ -25,15 +25,15 @@ pub struct Request {
     /// How much to sample.
     pub samples: Samples,
     /// The quantities that `samples` is about.
-    pub wanted: Vec<String>,
+    pub quantities: Vec<String>,
     /// Another one gives other samples.
     pub seed: u32,
 }
 
 impl Request {
-    /// Of `model`, as [`WANTED`], to an `accuracy`.
+    /// Of `model`, as [`DEFAULT_QUANTITIES`], to an `accuracy`.
     pub fn new(model: Model, accuracy: f64) -> Self {
-        let wanted = WANTED.map(str::to_owned).into();
-        Request { model, modes: None, samples: Samples::Until(accuracy), wanted, seed: 1 }
+        let quantities = DEFAULT_QUANTITIES.map(str::to_owned).into();
+        Request { model, modes: None, samples: Samples::Until(accuracy), quantities, seed: 1 }
     }
 }

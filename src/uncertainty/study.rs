@@ -1,10 +1,10 @@
-//! A study: impacts until mean and scatter of the wanted quantities are known well enough.
+//! A study: impacts until mean and scatter of the requested quantities are known well enough.
 
 use super::design::{MOST_INPUTS, MOST_ROWS, REPLICATES};
 use super::draw::Inputs;
 use super::estimate::{Row, mean, standard_deviation};
+use super::propagated::{PropagatedUncertainty, SampledImpacts};
 use super::request::{Request, Samples};
-use super::scatter::{SampledImpacts, Scatter};
 use crate::error::{Error, Result};
 use crate::kinds;
 use crate::scene::{Field, Scene, Template, Uncertainty};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Rows of the first look: 16 of each sequence.
 const FIRST_ROWS: usize = 16 * REPLICATES;
 /// Rows up to which accuracy is looked for.
-const MOST_WANTED: usize = 1 << 16;
+const LARGEST_STUDY: usize = 1 << 16;
 /// Relative error that the time integration may have in all results, far below any scatter worth a study.
 const TOLERANCE: f64 = 4e-5;
 
@@ -50,12 +50,12 @@ struct Growing<'a> {
 }
 
 impl Growing<'_> {
-    fn grow(&mut self, rows: usize, tell: &(dyn Fn(Progress) + Sync)) -> Result<()> {
+    fn grow(&mut self, rows: usize, on_progress: &(dyn Fn(Progress) + Sync)) -> Result<()> {
         self.plan.grow(self.inputs.sampled(rows, 0));
         match self.dir {
-            None => self.records.extend(in_memory(&self.plan, self.records.len(), tell)),
+            None => self.records.extend(in_memory(&self.plan, self.records.len(), on_progress)),
             Some(dir) => {
-                run(&self.plan, dir, Shard::WHOLE, tell)?;
+                run(&self.plan, dir, Shard::WHOLE, on_progress)?;
                 self.records = Table::join(&self.plan, dir, Shard::WHOLE)?.records().to_vec();
             }
         }
@@ -76,8 +76,8 @@ impl Growing<'_> {
         (0..rows).filter_map(row).collect()
     }
 
-    /// Half width of the widest interval of mean and deviation of the wanted quantities, over the deviation.
-    fn accuracy(&self, rows: usize, wanted: &[String]) -> f64 {
+    /// Half width of the widest interval of mean and deviation of the requested quantities, over the deviation.
+    fn accuracy(&self, rows: usize, quantities: &[String]) -> f64 {
         let of = |quantity: &String| {
             let rows = self.rows(rows, quantity);
             let (mean, deviation) = (mean(&rows), standard_deviation(&rows));
@@ -85,7 +85,7 @@ impl Growing<'_> {
             if width == 0.0 { 0.0 } else { width / deviation.value }
         };
         // what is no number is as wide as can be
-        wanted
+        quantities
             .iter()
             .map(of)
             .fold(0.0, |widest, width| if width > widest || width.is_nan() { width } else { widest })
@@ -93,7 +93,7 @@ impl Growing<'_> {
 }
 
 /// Runs the study that `request` asks for of the scene file `file`, in memory or in a `folder`, where its impacts are logged, so that it goes on if it
-/// was interrupted, and become the table `samples`; `tell` hears of the progress.
+/// was interrupted, and become the table `samples`; `on_progress` hears of the progress.
 ///
 /// # Errors
 /// As [`uncertainty_of`]; [`Error::Usage`] for a number of rows that can't be, or a folder of another study; [`Error::Solver`] if the nominal
@@ -102,8 +102,8 @@ pub fn study(
     (file, template): (&Path, &Template),
     request: &Request,
     folder: Option<(&Path, TableFormat)>,
-    tell: &(dyn Fn(Progress) + Sync),
-) -> Result<Scatter> {
+    on_progress: &(dyn Fn(Progress) + Sync),
+) -> Result<PropagatedUncertainty> {
     let scene = template.scene();
     let uncertainty = uncertainty_of(scene)?;
     let inputs = Inputs::new(uncertainty, request.seed)
@@ -130,15 +130,15 @@ pub fn study(
     )?;
     let mut growing = Growing { plan, inputs, dir: folder.map(|(dir, _)| dir), records: Vec::new() };
     let mut rows = first;
-    growing.grow(rows, tell)?;
+    growing.grow(rows, on_progress)?;
     let reached = loop {
         let Samples::Until(accuracy) = request.samples else { break None };
-        let reached = growing.accuracy(rows, &request.wanted);
-        if reached <= accuracy || 2 * rows > MOST_WANTED {
+        let reached = growing.accuracy(rows, &request.quantities);
+        if reached <= accuracy || 2 * rows > LARGEST_STUDY {
             break Some(reached <= accuracy);
         }
         rows *= 2;
-        growing.grow(rows, tell)?;
+        growing.grow(rows, on_progress)?;
     };
     let Growing { inputs, records, plan, .. } = &growing;
     if let Outcome::Invalid(reason) | Outcome::Failed(reason) = &records[0].outcome {
@@ -163,10 +163,11 @@ pub fn study(
         rows: growing.rows(rows, quantity),
     };
     let quantities = kinds::of(scene).quantities().iter().filter(|quantity| !quantity.is_count);
-    let mut scatter = Scatter::of(scene, request, inputs, quantities.map(|q| (q.name, q.unit, of(q.name))));
-    (scatter.samples, scatter.impacts, scatter.failures, scatter.accurate) =
+    let mut propagated =
+        PropagatedUncertainty::of(scene, request, inputs, quantities.map(|q| (q.name, q.unit, of(q.name))));
+    (propagated.samples, propagated.impacts, propagated.failures, propagated.accurate) =
         (rows, plan.len(), lost, reached);
-    scatter.notes.extend(failure.map(|record| {
+    propagated.notes.extend(failure.map(|record| {
         let reason = record.outcome.reason();
         format!(
             "{lost} of {} impacts have no result and their rows are omitted; the first: {reason}",
@@ -175,18 +176,18 @@ pub fn study(
     }));
     let open = records.iter().filter(|record| plan.value(record, "converged") == Some(0.0)).count();
     if open > 0 {
-        scatter.notes.push(format!(
+        propagated.notes.push(format!(
             "the time integration of {open} of {} impacts did not converge to {TOLERANCE:.0e}: their contacts amplify every error, which adds to the standard deviations",
             plan.len()
         ));
     }
     if reached == Some(false) {
-        scatter
+        propagated
             .notes
             .push(format!("{rows} samples do not reach the requested accuracy; this is the largest number"));
     }
     if let Some((dir, format)) = folder {
         Table::join(plan, dir, Shard::WHOLE)?.write(dir, "samples", format)?;
     }
-    Ok(scatter)
+    Ok(propagated)
 }

@@ -10,7 +10,7 @@
 use crate::format::{prefixed, with_unit, words};
 use crate::result::Summary;
 use crate::scene::Model;
-use crate::uncertainty::{QuantityScatter, Scatter};
+use crate::uncertainty::{PropagatedUncertainty, QuantityUncertainty};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -86,8 +86,11 @@ impl Shown {
 
 /// Propagated input uncertainty of the result called `name`: that of its own model if there is one, else of model C, which stands for
 /// the reference and for other programs.
-pub fn scatter_of<'s>(scatters: &'s BTreeMap<String, Scatter>, name: &str) -> Option<&'s Scatter> {
-    scatters.get(name).or_else(|| scatters.get(&Model::C.to_string()))
+pub fn propagated_of<'s>(
+    propagations: &'s BTreeMap<String, PropagatedUncertainty>,
+    name: &str,
+) -> Option<&'s PropagatedUncertainty> {
+    propagations.get(name).or_else(|| propagations.get(&Model::C.to_string()))
 }
 
 /// Standard numerical uncertainty of the quantity called `name` in `summary`; `None` if it is not known. That model A has one mode is its error,
@@ -103,23 +106,23 @@ pub fn numerical(summary: &Summary, name: &str) -> Option<f64> {
 }
 
 impl Assessment {
-    /// Of the `error` of a quantity with this `scatter`; `u_num` and `u_d` are the standard uncertainties of both sides. `None` if one of
+    /// Of the `error` of a quantity with this `propagated`; `u_num` and `u_d` are the standard uncertainties of both sides. `None` if one of
     /// them is no number.
     pub fn of(
         error: f64,
         (u_num, u_d): (Option<f64>, Option<f64>),
-        scatter: &QuantityScatter,
+        propagated: &QuantityUncertainty,
     ) -> Option<Self> {
-        let u_input = scatter.standard_deviation;
+        let u_input = propagated.standard_deviation;
         let u_val = [u_num, Some(u_input), u_d].into_iter().flatten().map(|u| u * u).sum::<f64>().sqrt();
         if !(error.is_finite() && u_val.is_finite()) {
             return None;
         }
         let alone = |first: f64| u_input * first.max(0.0).sqrt();
         let inputs: BTreeMap<String, f64> =
-            scatter.sobol.iter().map(|(name, share)| (name.clone(), alone(share.first))).collect();
+            propagated.sobol.iter().map(|(name, share)| (name.clone(), alone(share.first))).collect();
         let verdict = Shown::of(error, u_val);
-        let to = prefixed(scatter.unit, error.abs().max(u_val));
+        let to = prefixed(propagated.unit, error.abs().max(u_val));
         let [size, uncertainty, both] = [error.abs(), u_val, COVERAGE * u_val].map(|v| with_unit(v, to, 2));
         let sentence = match verdict {
             Shown::Within => format!(
@@ -179,14 +182,14 @@ mod tests {
     use crate::uncertainty::Share;
 
     /// Scatter of 0.03, of which two inputs make shares of 0.64 and 0.36.
-    fn scatter() -> QuantityScatter {
+    fn propagated() -> QuantityUncertainty {
         let share = |first: f64| Share {
             first,
             first_interval: [first; 2],
             total: first,
             total_interval: [first; 2],
         };
-        QuantityScatter {
+        QuantityUncertainty {
             unit: "1",
             nominal: Some(0.7),
             mean: 0.7,
@@ -210,26 +213,30 @@ mod tests {
             (-0.1, Shown::Undecided),
             (0.11, Shown::ModelError),
         ] {
-            let found = Assessment::of(error, (Some(0.0), Some(0.04)), &scatter()).expect("numbers");
+            let found = Assessment::of(error, (Some(0.0), Some(0.04)), &propagated()).expect("numbers");
             assert!((found.u_val - 0.05).abs() < 1e-15, "{found:?}");
             assert_eq!(found.verdict, verdict, "{found:?}");
             assert_eq!(found.would_decide.is_none(), verdict == Shown::ModelError);
         }
-        let inputs = Assessment::of(0.0, (None, None), &scatter()).expect("numbers").parts.inputs;
+        let inputs = Assessment::of(0.0, (None, None), &propagated()).expect("numbers").parts.inputs;
         assert!((inputs["thickness"] - 0.024).abs() < 1e-15 && (inputs["speed"] - 0.018).abs() < 1e-15);
-        assert_eq!(Assessment::of(f64::NAN, (None, None), &scatter()), None);
+        assert_eq!(Assessment::of(f64::NAN, (None, None), &propagated()), None);
     }
 
     #[test]
-    fn the_input_that_decides_is_told_with_how_well_it_has_to_be_known() {
-        let told = |error| {
-            let found = Assessment::of(error, (None, None), &scatter()).expect("numbers");
+    fn the_input_that_decides_is_named_with_its_required_accuracy() {
+        let sentence = |error| {
+            let found = Assessment::of(error, (None, None), &propagated()).expect("numbers");
             found.would_decide.expect("none shown")
         };
         // u_val has to fall to 0.02: thickness from 0.024 to sqrt(0.02^2 - 0.018^2) = 0.00872, 36 % of it
-        assert!(told(0.04).contains("`thickness` (64 % of u_val^2) known to 36 % of"), "{}", told(0.04));
-        assert!(told(0.02).contains("all inputs known better would"), "{}", told(0.02));
-        let coarse = Assessment::of(0.02, (None, Some(0.03)), &scatter()).expect("numbers");
+        assert!(
+            sentence(0.04).contains("`thickness` (64 % of u_val^2) known to 36 % of"),
+            "{}",
+            sentence(0.04)
+        );
+        assert!(sentence(0.02).contains("all inputs known better would"), "{}", sentence(0.02));
+        let coarse = Assessment::of(0.02, (None, Some(0.03)), &propagated()).expect("numbers");
         assert!(coarse.would_decide.expect("none shown").starts_with("no input known better"));
     }
 }

@@ -66,7 +66,7 @@ pub struct Row {
 impl Row {
     /// `None` if a side is not determined, or nothing can be relative to it.
     fn of(row: &Discrepancy) -> Option<Self> {
-        let finite = |value: Option<f64>| value.filter(|v| v.is_finite()).map(kept);
+        let finite = |value: Option<f64>| value.filter(|v| v.is_finite()).map(with_digits);
         let reference = finite(row.reference).filter(|value| *value != 0.0)?;
         let (quantity, band) = (row.quantity.clone(), finite(row.uncertainty));
         Some(Row { quantity, reduced: finite(row.reduced)?, reference, band })
@@ -99,7 +99,7 @@ impl Validation {
     fn of_model(scene: &Scene, comparison: &SceneComparison, model: &ModelComparison) -> Self {
         let reference = &comparison.reference;
         let largest = model.largest().map(|row| &row.quantity);
-        let is_kept = |row: &&Discrepancy| decides(&row.quantity) || Some(&row.quantity) == largest;
+        let is_recorded = |row: &&Discrepancy| decides(&row.quantity) || Some(&row.quantity) == largest;
         Validation {
             scene: scene.name.clone(),
             scene_hash: reference.scene_hash.clone(),
@@ -115,13 +115,13 @@ impl Validation {
             program: PROGRAM.into(),
             // the map is of this program's references: another one's stand beside them
             place: reference.model.is_none().then(|| Place::of(scene, reference)).flatten(),
-            rows: model.discrepancies.iter().filter(is_kept).filter_map(Row::of).collect(),
+            rows: model.discrepancies.iter().filter(is_recorded).filter_map(Row::of).collect(),
         }
     }
 
     /// The same reference beside a model that now gives `summary`.
     pub fn renewed(&self, summary: &Summary) -> Self {
-        let now = |row: &Row| value_in(summary, &row.quantity).map_or(row.reduced, kept);
+        let now = |row: &Row| value_in(summary, &row.quantity).map_or(row.reduced, with_digits);
         let rows = self.rows.iter().map(|row| Row { reduced: now(row), ..row.clone() }).collect();
         Validation { modes: summary.modes, program: PROGRAM.into(), rows, ..self.clone() }
     }
@@ -161,6 +161,6 @@ fn are_sound(checks: &[Check]) -> bool {
 }
 
 /// `value` with the digits that are kept.
-fn kept(value: f64) -> f64 {
+fn with_digits(value: f64) -> f64 {
     rounded(value, DIGITS)
 }

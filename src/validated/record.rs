@@ -32,9 +32,9 @@ pub fn record(new: &[Validation]) -> Result<()> {
 /// # Errors
 /// If the file can't be read.
 pub fn of_store(store: &Store) -> Result<Vec<Validation>> {
-    let mut kept: Vec<Validation> = json_lines::read(&file(store))?;
-    kept.retain(|v| v.program == PROGRAM && v.revision >= SAME_SINCE);
-    Ok(kept)
+    let mut current: Vec<Validation> = json_lines::read(&file(store))?;
+    current.retain(|v| v.program == PROGRAM && v.revision >= SAME_SINCE);
+    Ok(current)
 }
 
 /// Keeps `new` in `store`.

@@ -144,7 +144,7 @@ fn output_folder_that_is_a_file_ends_with_2_and_one_that_cannot_be_written_with_
 }
 
 #[test]
-fn reference_that_is_not_there_ends_with_11_and_says_what_to_do() {
+fn a_missing_reference_ends_with_11_and_a_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let store = folder.path().join("store");
     let out = folder.path().join("report");

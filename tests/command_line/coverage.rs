@@ -22,21 +22,23 @@ fn document(command: &str, scenes: &[&str]) -> Value {
 /// reference there is not, says so; what no scene has is empty.
 #[test]
 fn features_are_covered_as_far_as_references_are_stored() {
-    let partners = |found: &Value, feature: &str| -> Vec<Value> {
+    let comparators = |found: &Value, feature: &str| -> Vec<Value> {
         let features = found["features"].as_array().unwrap();
         let entry = features.iter().find(|entry| entry["feature"] == feature).unwrap();
-        let partners = entry["partners"].as_array().unwrap().iter();
-        let own = |partner: &&Value| partner["partner"] != "closed form" && partner["partner"] != "CalculiX";
-        partners.filter(own).cloned().collect()
+        let comparators = entry["partners"].as_array().unwrap().iter();
+        let own = |comparator: &&Value| {
+            comparator["partner"] != "closed form" && comparator["partner"] != "CalculiX"
+        };
+        comparators.filter(own).cloned().collect()
     };
     let scenes = ["scaled-plate-r10", "scaled-plate-r6.35", "scenes/examples/wet-valve-plate.toml"];
     let found = document("coverage", &scenes);
-    let clamped = partners(&found, "clamped edge");
+    let clamped = comparators(&found, "clamped edge");
     for (entry, model) in clamped.iter().zip(["A", "B", "C"]) {
         assert_eq!((&entry["model"], &entry["partner"]), (&model.into(), &"axisymmetric".into()));
         assert_eq!(entry["scenes"], serde_json::json!(scenes[..2]));
         let alone = scenes[..2].iter().map(|scene| {
-            let alone = partners(&document("coverage", &[scene]), "clamped edge");
+            let alone = comparators(&document("coverage", &[scene]), "clamped edge");
             let entry = alone.iter().find(|entry| entry["model"] == model).unwrap();
             entry["worst_relative"].as_f64().unwrap()
         });
@@ -44,23 +46,23 @@ fn features_are_covered_as_far_as_references_are_stored() {
         assert!(entry["band"].as_f64().unwrap() < 0.01);
     }
     assert_eq!(clamped.len(), 3);
-    let wet = partners(&found, "squeeze film");
+    let wet = comparators(&found, "squeeze film");
     assert!(!wet.is_empty());
     assert!(wet.iter().all(|entry| entry["partner"].is_null() && entry["worst_relative"].is_null()));
-    assert!(partners(&found, "bender").is_empty());
+    assert!(comparators(&found, "bender").is_empty());
 }
 
 /// The second program's stored solutions stand beside every model, in a column of their own, with a band.
 #[test]
-fn the_second_program_is_a_partner_of_its_own() {
+fn the_independent_solver_is_a_separate_comparator() {
     let found = document("coverage", &["scaled-plate-r10", "scenes/validation/free-plate.toml"]);
     for (feature, scene) in [("clamped edge", "scaled-plate-r10"), ("free edge", "free-plate")] {
         let entry = found["features"].as_array().unwrap().iter().find(|f| f["feature"] == feature).unwrap();
         let is_of_c = |p: &&Value| p["partner"] == "CalculiX" && p["model"] == "C";
-        let partner = entry["partners"].as_array().unwrap().iter().find(is_of_c).unwrap();
-        assert_eq!(partner["scenes"], serde_json::json!([scene]));
-        let [worst, band] = ["worst_relative", "band"].map(|key| partner[key].as_f64().unwrap());
-        assert!(worst < 0.02 && (1e-4..0.04).contains(&band), "{partner}");
+        let comparator = entry["partners"].as_array().unwrap().iter().find(is_of_c).unwrap();
+        assert_eq!(comparator["scenes"], serde_json::json!([scene]));
+        let [worst, band] = ["worst_relative", "band"].map(|key| comparator[key].as_f64().unwrap());
+        assert!(worst < 0.02 && (1e-4..0.04).contains(&band), "{comparator}");
     }
 }
 
@@ -71,26 +73,28 @@ fn references_that_are_elsewhere_are_known_by_what_they_showed() {
     let changed = dir.path().join("compact-bodies.toml");
     let text = std::fs::read_to_string(format!("{ROOT}/scenes/validation/compact-bodies.toml")).unwrap();
     std::fs::write(&changed, text.replacen("10 g", "11 g", 1)).unwrap();
-    let partners = |scene: &str| {
+    let comparators = |scene: &str| {
         let found =
             document("coverage", &[scene, "--store", &dir.path().join("store").display().to_string()]);
         let features = found["features"].as_array().unwrap().clone();
         let feature = features.into_iter().find(|f| f["feature"] == "compact outer body").unwrap();
-        let partners = feature["partners"].as_array().unwrap().iter();
+        let comparators = feature["partners"].as_array().unwrap().iter();
         // the contact has its closed form whatever is stored
-        Value::Array(partners.filter(|partner| partner["partner"] != "closed form").cloned().collect())
+        Value::Array(
+            comparators.filter(|comparator| comparator["partner"] != "closed form").cloned().collect(),
+        )
     };
-    let known = partners("scenes/validation/compact-bodies.toml");
+    let known = comparators("scenes/validation/compact-bodies.toml");
     let model_c = known.as_array().unwrap().iter().find(|entry| entry["model"] == "C").unwrap();
     assert_eq!(model_c["partner"], "axisymmetric");
     assert!((1e-4..1e-2).contains(&model_c["worst_relative"].as_f64().unwrap()), "{model_c}");
-    let unknown = partners(&changed.display().to_string());
+    let unknown = comparators(&changed.display().to_string());
     assert!(unknown.as_array().unwrap().iter().all(|entry| entry["partner"].is_null()), "{unknown}");
 }
 
 /// A comparison keeps in the user's store what it found with a reference of that store, once.
 #[test]
-fn comparisons_keep_what_they_find_beside_the_references() {
+fn comparisons_are_stored_with_the_references() {
     let dir = tempfile::tempdir().unwrap();
     let (scene, store) = ("scaled-plate-r6.35", dir.path().join("store"));
     let entry = store.join(scene).join("coarse");
@@ -99,21 +103,21 @@ fn comparisons_keep_what_they_find_beside_the_references() {
         let file = file.unwrap();
         std::fs::copy(file.path(), entry.join(file.file_name())).unwrap();
     }
-    let kept = store.join("validated.jsonl");
+    let record = store.join("validated.jsonl");
     let out = dir.path().join("report").display().to_string();
     let compare = |resolution: &str, models: &str| {
         let store = store.display().to_string();
         let arguments =
             [scene, "--resolution", resolution, "--models", models, "--out", &out, "--store", &store];
         document("compare", &arguments);
-        std::fs::read_to_string(&kept).ok()
+        std::fs::read_to_string(&record).ok()
     };
     assert_eq!(compare("paper", "C"), None, "its reference is not of this store");
     let one = compare("coarse", "C").unwrap();
     assert_eq!(one.lines().count(), 1);
     assert!(compare("coarse", "B").unwrap().ends_with(&one));
     // one that can't be read is told of and left alone
-    std::fs::write(&kept, "no JSON\n").unwrap();
+    std::fs::write(&record, "no JSON\n").unwrap();
     assert_eq!(compare("coarse", "C").unwrap(), "no JSON\n");
 }
 

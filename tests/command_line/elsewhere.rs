@@ -139,7 +139,7 @@ fn the_folder_that_impactcheck_home_names_comes_first() {
 }
 
 #[test]
-fn files_beside_the_program_are_found() {
+fn files_next_to_the_program_are_found() {
     let elsewhere = Elsewhere::new();
     elsewhere.project("share/impactcheck", "installed");
     elsewhere.does("here", &["reduced", "installed", "--model", "A"], &[]);
@@ -163,7 +163,7 @@ fn a_checkout_takes_new_solutions_of_its_own_scenes_only() {
 }
 
 #[test]
-fn doctor_tells_what_the_solver_cannot_import_and_where_the_files_are() {
+fn doctor_lists_what_the_solver_cannot_import_and_where_the_files_are() {
     let elsewhere = Elsewhere::new();
     let answer = r#"echo '{"python": "3.11", "fem_reference": null, "dolfinx": "0.5.2", "meshio": null}'"#;
     fs::write(elsewhere.path("python"), format!("#!/bin/sh\n{answer}\n")).expect("script");
@@ -172,8 +172,8 @@ fn doctor_tells_what_the_solver_cannot_import_and_where_the_files_are() {
         assert_eq!(output.status.code(), Some(12), "ill");
         serde_json::from_slice(&output.stdout).expect("JSON")
     };
-    let told = checks(&[]);
-    let check = |name: &str| told.iter().find(|c| c["name"] == name).unwrap_or_else(|| panic!("{name}"));
+    let listed = checks(&[]);
+    let check = |name: &str| listed.iter().find(|c| c["name"] == name).unwrap_or_else(|| panic!("{name}"));
     assert!(check("meshio")["found"].is_null() && check("fem_reference")["found"].is_null());
     let install = check("meshio")["install"].as_str().expect("text");
     assert!(

@@ -9,7 +9,7 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 struct Gated {
     status: Option<i32>,
     document: Value,
-    told: String,
+    messages: String,
 }
 
 /// `gate` on a scene file, with further arguments.
@@ -26,14 +26,14 @@ fn gate(scene: &Path, arguments: &[&str], allowed: Option<&str>) -> Gated {
     Gated {
         status: output.status.code(),
         document: serde_json::from_slice(&output.stdout).unwrap_or(Value::Null),
-        told: String::from_utf8_lossy(&output.stderr).into_owned(),
+        messages: String::from_utf8_lossy(&output.stderr).into_owned(),
     }
 }
 
 impl Gated {
     fn model(&self, name: &str) -> &Value {
         let models = self.document["scenes"][0]["models"].as_array();
-        let models = models.unwrap_or_else(|| panic!("{}", self.told));
+        let models = models.unwrap_or_else(|| panic!("{}", self.messages));
         models.iter().find(|model| model["model"] == name).unwrap_or_else(|| panic!("no model {name}"))
     }
 }
@@ -57,8 +57,10 @@ fn nothing_runs_unless_the_user_allows_it() {
     let folder = tempfile::tempdir().unwrap();
     let scene = scene(folder.path(), &[("mine", "echo ran >> it-ran; echo \"{}\"")], "");
     for refused in [gate(&scene, &[], None), gate(&scene, &[], Some("0"))] {
-        assert_eq!(refused.status, Some(2), "{}", refused.told);
-        assert!(refused.told.contains("`sh -c echo ran") && refused.told.contains("--allow-external"));
+        assert_eq!(refused.status, Some(2), "{}", refused.messages);
+        assert!(
+            refused.messages.contains("`sh -c echo ran") && refused.messages.contains("--allow-external")
+        );
     }
     assert_eq!(gate(&scene, &["--models", "C"], None).status, Some(0));
     assert!(!folder.path().join("it-ran").exists());
@@ -66,7 +68,7 @@ fn nothing_runs_unless_the_user_allows_it() {
         gate(&scene, &["--models", "C,external", "--allow-external"], None),
         gate(&scene, &["--models", "external"], Some("1")),
     ] {
-        assert_eq!(allowed.status, Some(0), "{}", allowed.told);
+        assert_eq!(allowed.status, Some(0), "{}", allowed.messages);
     }
     // in the scene's folder, once each
     assert_eq!(std::fs::read_to_string(folder.path().join("it-ran")).unwrap(), "ran\nran\n");
@@ -77,7 +79,7 @@ fn nothing_runs_unless_the_user_allows_it() {
 fn models_of_ones_own_are_judged_as_those_of_the_program() {
     let example = Path::new(ROOT).join("examples/external/scaled-plate-r10.toml");
     let judged = gate(&example, &["--models", "A,B,external", "--allow-external"], None);
-    assert_eq!(judged.status, Some(0), "{}", judged.told);
+    assert_eq!(judged.status, Some(0), "{}", judged.messages);
     for (name, own, gated) in [("scipy", "B", 12), ("awk", "A", 11)] {
         let (theirs, ours) = (judged.model(name), judged.model(own));
         let source = &theirs["summary"]["source"];
@@ -101,7 +103,7 @@ fn models_of_ones_own_are_judged_as_those_of_the_program() {
 
 /// Whatever a program does, the others have their results, and it is said what is wrong with this one.
 #[test]
-fn a_program_that_misbehaves_is_told_of_and_stops_nothing() {
+fn a_program_that_fails_is_reported_and_stops_nothing() {
     let failing = [
         ("fails", "echo broken >&2; exit 3", "it failed (exit status: 3); its last messages: broken"),
         ("hangs", "sleep 1000", "it was not done after 0.5 s (timeout) and was ended"),
@@ -144,13 +146,13 @@ fn a_program_that_misbehaves_is_told_of_and_stops_nothing() {
 
     let start = std::time::Instant::now();
     let judged = gate(&file, &["--models", "C,external", "--allow-external"], None);
-    assert_eq!(judged.status, Some(12), "a program has failed: {}", judged.told);
+    assert_eq!(judged.status, Some(12), "a program has failed: {}", judged.messages);
     assert!(start.elapsed().as_secs() < 900, "nobody waited for what was left behind");
     for (name, _, part) in failing {
         let model = judged.model(name);
         let failure = model["summary"]["failure"].as_str().unwrap_or_else(|| panic!("{name} has not failed"));
         assert!(failure.contains(part), "{name}: {failure}");
-        assert!(judged.told.contains(failure), "{name} is told of on standard error");
+        assert!(judged.messages.contains(failure), "{name} is told of on standard error");
         assert_eq!((&model["verdict"], &model["summary"]["efficiency"]), (&"fail".into(), &Value::Null));
     }
     for (name, _, check) in lying {
@@ -185,7 +187,7 @@ fn an_answer_has_to_be_a_document_that_mechanics_allows() {
     let folder = tempfile::tempdir().unwrap();
     let file = scene(folder.path(), &programs, "[tolerances.mark]\nefficiency = 0.001\n");
     let judged = gate(&file, &["--models", "external", "--allow-external"], None);
-    assert_eq!(judged.status, Some(12), "{}", judged.told);
+    assert_eq!(judged.status, Some(12), "{}", judged.messages);
     for (name, laws) in [
         ("sign", &["inner_velocity_final_direction", "outer_velocity_final_direction"]),
         ("microseconds", &["outer_push_time", "outer_depth"]),

@@ -89,7 +89,7 @@ fn a_reduced_model_alone_has_a_page() {
 }
 
 #[test]
-fn results_over_commits_that_are_not_there_are_told() {
+fn missing_results_over_commits_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let arguments =
         ["compare", "scaled-plate-r6.35", "--models", "A", "--trends", "none.jsonl", "--out", "report"];
@@ -141,7 +141,7 @@ fn a_new_scene_may_be_named_by_its_file() {
 }
 
 #[test]
-fn a_new_scene_names_the_schema_that_stands_beside_it() {
+fn a_new_scene_names_the_schema_in_its_folder() {
     let folder = tempfile::tempdir().unwrap();
     for (name, kind) in [("sub/plate", "plate-impact"), ("sub/seat", "seal-seat")] {
         run(folder.path(), &["new", name, "--kind", kind], 0);
@@ -208,7 +208,7 @@ fn a_pure_number_has_no_unit() {
 }
 
 #[test]
-fn a_model_that_has_no_form_for_a_scene_is_left_out_of_its_comparison() {
+fn a_model_that_has_no_form_for_a_scene_is_omitted_from_its_comparison() {
     let folder = tempfile::tempdir().unwrap();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/validation/off-centre.toml");
     let scene = scene.to_str().unwrap();

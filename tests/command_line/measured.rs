@@ -28,7 +28,7 @@ fn measured(folder: &Path, name: &str, shift: f64) -> PathBuf {
 }
 
 #[test]
-fn compare_takes_measured_files_as_a_third_partner() {
+fn compare_takes_measured_files_as_a_third_comparator() {
     let folder = tempfile::tempdir().unwrap();
     let (first, second) =
         (measured(folder.path(), "first.csv", 5.0), measured(folder.path(), "second.csv", -3.0));
@@ -52,9 +52,9 @@ fn compare_takes_measured_files_as_a_third_partner() {
     }
     assert_eq!(found["efficiency"]["count"], 2);
     assert!(found["rule"].as_str().unwrap().contains("free flight"));
-    let partners: Vec<&str> =
+    let comparators: Vec<&str> =
         found["partners"].as_array().unwrap().iter().map(|p| p["partner"].as_str().unwrap()).collect();
-    assert_eq!(partners, ["reference", "B", "C"]);
+    assert_eq!(comparators, ["reference", "B", "C"]);
     for kind in ["measured", "efficiencies"] {
         for extension in ["svg", "png"] {
             assert!(out.join(format!("scaled-plate-r10-{kind}.{extension}")).is_file());

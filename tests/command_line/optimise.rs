@@ -33,7 +33,7 @@ fn optimum_of_fig_16_with_its_neighbourhood() {
 }
 
 #[test]
-fn optimum_is_verified_by_the_reference_or_its_lack_is_told() {
+fn optimum_is_verified_by_the_reference_or_a_missing_one_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let scene = file(folder.path(), "thin.toml", THIN_PLATE);
     let store = folder.path().join("store");

@@ -42,9 +42,13 @@ fn changed(store: &Path, change: impl Fn(&mut Value)) {
     let hash: String = Sha256::digest(&text).iter().map(|byte| format!("{byte:02x}")).collect();
     fs::write(to.join("summary.json"), text).unwrap();
     let sums = fs::read_to_string(to.join("checksums.sha256")).unwrap();
-    let kept = sums.lines().filter(|line| !line.ends_with("summary.json")).map(|line| format!("{line}\n"));
-    fs::write(to.join("checksums.sha256"), kept.collect::<String>() + &format!("{hash}  summary.json\n"))
-        .unwrap();
+    let other_sums =
+        sums.lines().filter(|line| !line.ends_with("summary.json")).map(|line| format!("{line}\n"));
+    fs::write(
+        to.join("checksums.sha256"),
+        other_sums.collect::<String>() + &format!("{hash}  summary.json\n"),
+    )
+    .unwrap();
 }
 
 /// The plate's frequency as if its mesh series had given `factor` times as much.
@@ -118,7 +122,7 @@ fn both_programs_agree_on_every_recorded_scene() {
 }
 
 #[test]
-fn a_solution_that_is_asked_for_and_missing_or_in_contradiction_ends_with_11() {
+fn a_requested_solution_that_is_missing_or_in_contradiction_ends_with_11() {
     let store = tempfile::tempdir().unwrap();
     let missing = compared(store.path(), &["--reference-check", "--resolution", "coarse"]);
     assert_eq!(missing.status, 11, "{}", missing.said);

@@ -52,8 +52,9 @@ const RADIUS: &str =
 #[test]
 fn curves_and_references_have_the_places_of_their_numbers() {
     let folder = tempfile::tempdir().unwrap();
-    let (status, document, told) = sweep(folder.path(), &format!("model = [\"A\", \"B\"]\n{RADIUS}"), &[]);
-    assert_eq!(status, Some(0), "{told}");
+    let (status, document, messages) =
+        sweep(folder.path(), &format!("model = [\"A\", \"B\"]\n{RADIUS}"), &[]);
+    assert_eq!(status, Some(0), "{messages}");
     let svg = fs::read_to_string(folder.path().join("sweep-sweep/sweep.svg")).unwrap();
     let curve = |colour| points(attributes(&svg, "path", &[colour], "d").last().unwrap());
     let drawn = [curve(ORANGE), curve(BLUE)];
@@ -96,8 +97,8 @@ fn a_map_has_the_lightest_cell_where_the_efficiency_is_highest() {
                 [[vary]]\nfield = \"plate.radius\"\nvalues = [\"33 mm\", \"15 mm\", \"-1 mm\"]\n";
     let figure = folder.path().join("map.pdf");
     let arguments = ["--figure", figure.to_str().unwrap(), "--quantity", "efficiency,inner_force_peak"];
-    let (status, document, told) = sweep(folder.path(), &format!("model = [\"B\"]\n{vary}"), &arguments);
-    assert_eq!(status, Some(0), "{told}");
+    let (status, document, messages) = sweep(folder.path(), &format!("model = [\"B\"]\n{vary}"), &arguments);
+    assert_eq!(status, Some(0), "{messages}");
     let rows = document["rows"].as_array().unwrap();
     let ok: Vec<&Value> = rows.iter().filter(|row| row[3] == "ok").collect();
     assert_eq!((rows.len(), ok.len()), (9, 6));
@@ -127,12 +128,12 @@ fn more_than_two_parameters_are_a_table_alone() {
                  [[vary]]\nfield = \"plate.radius\"\nvalues = [0.03, 0.04]\n\
                  [[vary]]\nfield = \"plate.thickness\"\nvalues = [0.002, 0.003]\n";
     let out = folder.path().join("sweep-sweep");
-    let (status, _, told) = sweep(folder.path(), three, &["--figure", "figure.svg"]);
-    assert!(status == Some(2) && told.contains("3 parameters vary") && !out.exists(), "{told}");
+    let (status, _, messages) = sweep(folder.path(), three, &["--figure", "figure.svg"]);
+    assert!(status == Some(2) && messages.contains("3 parameters vary") && !out.exists(), "{messages}");
     assert_eq!(sweep(folder.path(), three, &[]).0, Some(0));
     assert!(out.join("sweep.csv").is_file() && !out.join("sweep.svg").exists());
-    let (status, _, told) = sweep(folder.path(), RADIUS, &["--quantity", "efficency"]);
-    assert!(status == Some(2) && told.contains("did you mean `efficiency`?"), "{told}");
+    let (status, _, messages) = sweep(folder.path(), RADIUS, &["--quantity", "efficency"]);
+    assert!(status == Some(2) && messages.contains("did you mean `efficiency`?"), "{messages}");
     for twice in ["model = [\"B\", \"B\"]", "model = []"] {
         assert_eq!(sweep(folder.path(), &format!("{twice}\n{RADIUS}"), &[]).0, Some(3), "{twice}");
     }

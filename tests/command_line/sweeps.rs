@@ -154,10 +154,10 @@ fn killed_sweep_resumes_without_losing_or_doubling_a_result() {
     let mut bytes = fs::read(&log).unwrap();
     bytes.extend_from_slice(b"deadbeef 17 ok 1.5e0 2.5");
     fs::write(&log, bytes).unwrap();
-    let kept = before.len();
+    let finished = before.len();
     let ended = impactcheck(&arguments);
     assert_eq!(ended.status, 0, "{}", ended.error);
-    assert!(ended.error.contains(&format!("{} of them run now", POINTS - kept)), "{}", ended.error);
+    assert!(ended.error.contains(&format!("{} of them run now", POINTS - finished)), "{}", ended.error);
     let all = recorded(&out);
     assert_eq!(all.len(), POINTS);
     assert!(all.values().all(|count| *count == 1), "none twice");

@@ -7,7 +7,7 @@ use std::fs;
 const SCENE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/uncertainty/table1-r10.toml");
 
 #[test]
-fn the_scatter_of_a_scene_is_found_and_a_study_goes_on_where_it_stopped() {
+fn the_input_uncertainty_of_a_scene_is_propagated_and_a_study_resumes() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let study = |samples: &str| {
@@ -56,7 +56,7 @@ fn what_can_t_be_sampled_is_refused() {
 }
 
 #[test]
-fn differences_are_held_against_what_the_inputs_leave_open() {
+fn differences_are_compared_with_the_input_uncertainty() {
     let folder = tempfile::tempdir().unwrap();
     let compared = |scene: &str, out: &str| {
         json(&["compare", scene, "--models", "B,C", "--json", "--out", text(&folder.path().join(out))])

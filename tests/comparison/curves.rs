@@ -99,7 +99,7 @@ fn averaged_force_is_the_force_half_an_interval_earlier() {
 
 /// Every field that the document promises, with numbers that belong together.
 #[test]
-fn json_document_has_the_promised_fields() {
+fn json_document_has_the_fields_of_the_contract() {
     let comparison = Comparison::new(vec![compare_scene(&scene(), &reference(), &[reduced()])]);
     let document: serde_json::Value =
         serde_json::from_str(&serde_json::to_string(&comparison).unwrap()).unwrap();

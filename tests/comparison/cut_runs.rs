@@ -107,11 +107,11 @@ fn report_and_terminal_say_what_is_not_determined() {
         attachments: Attachments::default(),
     };
     let report = Report { scenes: vec![report], rules: GateRules::default() };
-    let told = "efficiency: model not determined, reference not determined; a tolerance needs both";
+    let sentence = "efficiency: model not determined, reference not determined; a tolerance needs both";
     for text in [terminal(&report, Width::Narrow), junit(&report).unwrap()] {
         // the terminal breaks lines
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(text.contains(told), "{text}");
+        assert!(text.contains(sentence), "{text}");
     }
     assert!(
         terminal(&report, Width::Narrow)

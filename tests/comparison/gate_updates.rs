@@ -162,7 +162,7 @@ fn a_tolerance_changes_with_a_reason_only_and_comments_stay() {
 }
 
 #[test]
-fn a_tolerance_loosened_by_hand_is_told_until_there_is_a_reason() {
+fn a_loosened_tolerance_has_a_warning_until_there_is_a_reason() {
     let repository = Repository::new();
     assert!(!repository.gate(&[]).1.contains("without a reason"), "nothing was accepted yet");
     assert_eq!(repository.gate(&["--update", "--reason", "first reference"]).0, 0);
@@ -176,9 +176,10 @@ fn a_tolerance_loosened_by_hand_is_told_until_there_is_a_reason() {
     let output =
         repository.gate_in(&[("GITHUB_ACTIONS", "true")], &["--json", "--quiet", "--junit", "gate.xml"]);
     assert_eq!(output.status.code(), Some(0), "a warning, no failure");
-    let told = "tolerances.C.efficiency was accepted as { absolute = 0.002 } and is now { absolute = 0.02 }";
+    let sentence =
+        "tolerances.C.efficiency was accepted as { absolute = 0.002 } and is now { absolute = 0.02 }";
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains(&format!("warning: {SCENE}: {told}")), "{said}");
+    assert!(said.contains(&format!("warning: {SCENE}: {sentence}")), "{said}");
     assert!(said.contains(&format!("::warning file=scene.toml,line={line},")), "{line}: {said}");
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     let changed = &json["scenes"][0]["changed_tolerances"];

@@ -51,20 +51,20 @@ fn a_scene_without_tolerances_has_not_passed() {
         assert_eq!(verdict, "not_gated");
     }
     let (status, said) = status_and_said(&output);
-    let told = "nothing of scene `scaled-plate-r6.35` is gated";
-    assert!(status == 0 && said.contains(&format!("warning: {told}")), "{said}");
+    let expected = "nothing of scene `scaled-plate-r6.35` is gated";
+    assert!(status == 0 && said.contains(&format!("warning: {expected}")), "{said}");
     assert!(!junit(&file).contains("<failure"));
 
     // tolerances of another model gate nothing either
     let (_folder, file) = scene("[tolerances.C]\nefficiency = 0.01\n");
     let (status, said) = status_and_said(&gate(&file, &["--require-tolerances"]));
-    assert!(status == 10 && said.contains(&format!("error: {told}")), "{said}");
+    assert!(status == 10 && said.contains(&format!("error: {expected}")), "{said}");
     assert!(junit(&file).contains("they are required"));
 }
 
 /// Model B is off by 0.0248; the reference knows its efficiency to 0.0004.
 #[test]
-fn what_the_reference_cannot_tell_is_undecided_and_the_user_says_how_it_counts() {
+fn a_row_within_the_uncertainty_is_undecided_and_an_option_sets_how_it_counts() {
     let (_folder, file) = scene("[tolerances.B]\nefficiency = { absolute = 0.0246 }\n");
     let warned = gate(&file, &[]);
     let found = document(&warned);
@@ -113,14 +113,14 @@ fn a_tolerance_without_a_value_to_compare_with_is_undecided_and_fails_where_tole
     let all = std::fs::read_to_string(folder.path().join("all.csv")).unwrap();
     let rows: Vec<Vec<&str>> = all.lines().map(|line| line.split(',').collect()).collect();
     let of = |name: &str| rows[0].iter().position(|heading| *heading == name).unwrap();
-    let kept = ["time", "outer_velocity", "inner_velocity"].map(of);
-    let row = |row: &Vec<&str>| kept.map(|k| row[k]).join(",");
+    let columns = ["time", "outer_velocity", "inner_velocity"].map(of);
+    let row = |row: &Vec<&str>| columns.map(|k| row[k]).join(",");
     let mut text = rows.iter().map(row).collect::<Vec<_>>().join("\n");
     // both bodies fly on
     let last = rows.last().unwrap();
-    let end: f64 = last[kept[0]].parse().unwrap();
+    let end: f64 = last[columns[0]].parse().unwrap();
     for k in 1..=rows.len() / 10 {
-        text += &format!("\n{},{},{}", end + 1e-7 * k as f64, last[kept[1]], last[kept[2]]);
+        text += &format!("\n{},{},{}", end + 1e-7 * k as f64, last[columns[1]], last[columns[2]]);
     }
     std::fs::write(folder.path().join("velocities.csv"), text).unwrap();
     let imported = run(&["reference", "import", "scene.toml", "--from", "velocities.csv"]);
@@ -131,9 +131,9 @@ fn a_tolerance_without_a_value_to_compare_with_is_undecided_and_fails_where_tole
         let output = run(&[&arguments[..], rules, &["--out", "report"]].concat());
         (document(&output), status_and_said(&output))
     };
-    let told = "B.outer_force_peak, B.outer_force_rms";
+    let expected = "B.outer_force_peak, B.outer_force_rms";
     let (found, (status, said)) = gate(&[]);
-    assert!(status == 0 && said.contains("warning: ") && said.contains(told), "{said}");
+    assert!(status == 0 && said.contains("warning: ") && said.contains(expected), "{said}");
     let rows = found["scenes"][0]["models"][0]["discrepancies"].as_array().unwrap();
     let verdict = |name: &str| &rows.iter().find(|row| row["quantity"] == name).unwrap()["verdict"];
     assert_eq!(found["verdict"], "undecided");
@@ -147,7 +147,7 @@ fn a_tolerance_without_a_value_to_compare_with_is_undecided_and_fails_where_tole
         &["--require-tolerances", "--undecided", "pass"],
     ] {
         let (_, (status, said)) = gate(rules);
-        assert!(status == 10 && said.contains("error: ") && said.contains(told), "{rules:?}: {said}");
+        assert!(status == 10 && said.contains("error: ") && said.contains(expected), "{rules:?}: {said}");
         let failure = "<failure message=\"outer_force_peak: model";
         assert!(junit(&file).contains(failure) && junit(&file).contains("has no value of it"), "{rules:?}");
     }

@@ -79,9 +79,9 @@ fn record(truth: &Outcome, signals: &[&'static str], with: Disturbance) -> Recor
     Record { file: "synthetic.csv".into(), time, channels }
 }
 
-fn aligned(record: &Record, partner: &Outcome, setup: &PlateImpact, speed: Speed) -> AlignedRecord {
-    let filtered = Filtered::new(&partner.history, BANDWIDTH).unwrap();
-    align(record, &filtered, determined(partner), &approach(setup), (BANDWIDTH, speed)).unwrap()
+fn aligned(record: &Record, outcome: &Outcome, setup: &PlateImpact, speed: Speed) -> AlignedRecord {
+    let filtered = Filtered::new(&outcome.history, BANDWIDTH).unwrap();
+    align(record, &filtered, determined(outcome), &approach(setup), (BANDWIDTH, speed)).unwrap()
 }
 
 #[test]
@@ -91,11 +91,11 @@ fn shift_within_a_tenth_of_a_microsecond_and_efficiency_within_half_a_point() {
         let truth = model(&scene, Model::C);
         let expected = truth.summary.value("efficiency").unwrap();
         // the model the record was made from, and the finite elements, which differ from it by a little
-        for (partner, seeds) in [(&truth, 1..=8), (&reference(&scene), 1..=3)] {
+        for (outcome, seeds) in [(&truth, 1..=8), (&reference(&scene), 1..=3)] {
             let mut bands = Vec::new();
             for seed in seeds {
                 let record = record(&truth, &SIGNALS, Disturbance { seed, ..DISTURBED });
-                let found = aligned(&record, partner, &setup, Speed::Scene);
+                let found = aligned(&record, outcome, &setup, Speed::Scene);
                 let (efficiency, band) = (found.efficiency.unwrap(), found.efficiency_uncertainty.unwrap());
                 let case = format!("{name}, seed {seed}: {:e} s, {efficiency}", found.shift);
                 assert!((found.shift - 5e-6).abs() < 0.1e-6, "{case}");
@@ -156,7 +156,7 @@ fn a_measured_speed_widens_the_interval_of_the_efficiency() {
 }
 
 #[test]
-fn one_signal_is_enough_and_missing_free_flight_is_told() {
+fn one_signal_is_enough_and_missing_free_flight_is_reported() {
     let (scene, setup) = scene("scaled-plate-r10");
     let truth = model(&scene, Model::C);
     let expected = truth.summary.value("efficiency").unwrap();
@@ -170,8 +170,8 @@ fn one_signal_is_enough_and_missing_free_flight_is_told() {
     }
     let whole = record(&truth, &SIGNALS, quiet);
     let part = |keep: &dyn Fn(f64) -> bool| {
-        let kept: Vec<usize> = (0..whole.time.len()).filter(|i| keep(whole.time[*i])).collect();
-        let pick = |values: &[f64]| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+        let selected: Vec<usize> = (0..whole.time.len()).filter(|i| keep(whole.time[*i])).collect();
+        let pick = |values: &[f64]| selected.iter().map(|i| values[*i]).collect::<Vec<f64>>();
         let channels = whole
             .channels
             .iter()
@@ -195,7 +195,7 @@ fn one_signal_is_enough_and_missing_free_flight_is_told() {
 }
 
 #[test]
-fn models_are_measured_by_the_same_metrics_and_a_series_by_mean_and_scatter() {
+fn models_have_the_same_metrics_and_a_series_has_mean_and_standard_deviation() {
     let (scene, _) = scene("scaled-plate-r10");
     let (truth, reference) = (model(&scene, Model::C), reference(&scene));
     let records: Vec<Record> = (1..=3)

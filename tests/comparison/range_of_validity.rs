@@ -94,7 +94,7 @@ fn a_yield_strength_is_checked_and_changes_nothing_else() {
 }
 
 #[test]
-fn the_page_tells_the_range_and_what_was_not_checked() {
+fn the_page_reports_the_limits_and_what_was_not_checked() {
     for (scene, checked) in [(scene("a", "a"), false), (with_yield_strength("1 GPa"), true)] {
         let Lookup::Found(stored) = Store::open(None).find(&scene, Resolution::Paper) else {
             panic!("stored")

@@ -66,7 +66,7 @@ fn kinds(record: &AlignedRecord) -> Vec<FindingKind> {
 }
 
 #[test]
-fn each_fault_is_named_and_the_efficiency_kept_where_it_can_be() {
+fn each_fault_is_named_and_the_efficiency_stated_where_it_can_be() {
     let bench = Bench::of("scaled-plate-r10");
     let clean = bench.record(1, 1.2e-3);
     let count = clean.time.len() as f64;
@@ -100,7 +100,7 @@ fn each_fault_is_named_and_the_efficiency_kept_where_it_can_be() {
         record
     };
     // efficiency within its stated uncertainty, where the fault can be cut off or taken out
-    for (name, record, kind, is_kept) in [
+    for (name, record, kind, is_usable) in [
         (
             "stop",
             changed(&clean, |k, t, v| if k == 1 && t > 700e-6 { -0.6 * v } else { v }),
@@ -141,7 +141,7 @@ fn each_fault_is_named_and_the_efficiency_kept_where_it_can_be() {
         let (efficiency, uncertainty) = (found.efficiency.unwrap(), found.efficiency_uncertainty.unwrap());
         let error = (efficiency - bench.efficiency()).abs();
         assert!(
-            !is_kept || error < 1.5 * uncertainty && uncertainty < 0.01,
+            !is_usable || error < 1.5 * uncertainty && uncertainty < 0.01,
             "{name}: {efficiency} +- {uncertainty}"
         );
     }

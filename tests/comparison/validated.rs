@@ -28,7 +28,7 @@ fn recorded(known: &[Validation], scene: &str, model: Model) -> Option<Validatio
 #[test]
 fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
     let known = shipped().unwrap();
-    let (scenes, mut held, mut stored) = (scenes(), 0, 0);
+    let (scenes, mut compared, mut stored) = (scenes(), 0, 0);
     for entry in &known {
         let is_of = |scene: &Scene| entry.is_of(scene, entry.model.parse().unwrap());
         assert!(scenes.iter().any(is_of), "{} is no scene any more", entry.scene);
@@ -81,7 +81,7 @@ fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
             let place = entry.place.unwrap();
             let own = Place::of(scene, &reduced.summary).filter(|_| model == Model::C);
             assert!(model != Model::C || own.unwrap().factor(&place) < 1.05, "{at}: {own:?} {place:?}");
-            held += 1;
+            compared += 1;
             let found =
                 [Resolution::Fine, Resolution::Paper].into_iter().find_map(
                     |resolution| match Store::shipped().unwrap().find(scene, resolution) {
@@ -99,7 +99,7 @@ fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
             }
         }
     }
-    assert_eq!((held, stored), (known.iter().filter(|v| v.place.is_some()).count(), 6 * 3));
+    assert_eq!((compared, stored), (known.iter().filter(|v| v.place.is_some()).count(), 6 * 3));
 }
 
 fn at(scene: &str, measures: [f64; 3], off: f64) -> Validation {

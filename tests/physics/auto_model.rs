@@ -126,7 +126,7 @@ fn layer_of_a_thin_plate_is_the_continuum() {
 }
 
 #[test]
-fn a_looser_tolerance_never_takes_a_dearer_model_and_promises_are_kept_on_table_1() {
+fn a_looser_tolerance_never_takes_a_costlier_model_and_table_1_is_within_tolerance() {
     for (name, efficiency, peaks) in
         [("scaled-plate-r10", 0.6946, [443.1, 352.1]), ("scaled-plate-r6.35", 0.3868, [142.9, 85.35])]
     {
@@ -180,7 +180,7 @@ fn auto_has_the_first_mode_of_a_plate_that_bends_to_a_paraboloid_for_nothing() {
 /// Errors of the estimate that only some impacts show: one that takes small errors far, one in which few modes are right by chance, one
 /// whose plate all but misses the inner body, one whose plate is hardly a plate.
 #[test]
-fn what_only_some_impacts_are_sensitive_to_is_not_promised() {
+fn a_quantity_sensitive_in_some_impacts_has_no_stated_accuracy() {
     for (text, tolerance, modes) in [
         (include_str!("../fixtures/late-inner-contact.toml"), 0.003, 32),
         (include_str!("../fixtures/foil.toml"), 0.01, 64),
@@ -289,7 +289,7 @@ fn a_thin_plate_takes_no_mesh_and_is_the_meshed_one() {
 
 /// A small part of `impactcheck study auto`, which `make evidence` draws.
 #[test]
-fn promises_are_kept_on_random_scenes() {
+fn the_stated_accuracy_is_met_on_random_scenes() {
     let study = {
         let extent = auto::Extent { random: 8, seed: 11, references: false, costed: 0 };
         auto::check(&extent, &Store::open(None), &mut |_| ()).unwrap()

@@ -183,7 +183,7 @@ fn offset_of_a_single_mode_is_the_closed_form() {
 
 /// The tip begins where the plate stands, and displacements there are counted from zero.
 #[test]
-fn impact_beside_the_straight_position_closes_its_ledger() {
+fn impact_off_the_straight_position_closes_its_balance() {
     for strike_at in [-0.5, 0.5] {
         let (system, result) = run(&rocker(Bender { strike_at, ..measured() }));
         let tip = system.of_bodies(&system.start[0])[0];
@@ -227,7 +227,7 @@ fn beam_takes_part_in_the_impact() {
 
 /// Modes whose waves are no longer than the contact patches are wide add nothing, and take nothing away.
 #[test]
-fn more_modes_than_the_contact_patches_can_tell_apart_change_nothing() {
+fn more_modes_than_the_contact_patches_resolve_change_nothing() {
     let scene = Scene::read(std::path::Path::new("scenes/examples/rocker-bender.toml")).unwrap();
     let run = |modes| Reduced::new(&scene, Model::C, Some(modes)).unwrap().run(1e-6).unwrap();
     let few = run(16);

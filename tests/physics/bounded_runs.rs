@@ -27,8 +27,8 @@ fn summary(text: &str, which: Model) -> Summary {
 /// Table 1 with the lines that begin as `lines` do in their place.
 fn changed(lines: &[&str]) -> String {
     let key = |line: &str| line.split('=').next().unwrap_or_default().to_owned();
-    let kept = TABLE_1.lines().filter(|line| !lines.iter().any(|new| key(new) == key(line)));
-    kept.chain(lines.iter().copied()).collect::<Vec<_>>().join("\n")
+    let unchanged = TABLE_1.lines().filter(|line| !lines.iter().any(|new| key(new) == key(line)));
+    unchanged.chain(lines.iter().copied()).collect::<Vec<_>>().join("\n")
 }
 
 #[test]
@@ -36,12 +36,12 @@ fn a_run_that_goes_on_for_seconds_after_its_impact_has_few_samples() {
     let short = model(TABLE_1, Model::B).run_with_history(1e-7).unwrap();
     let long = model(&changed(&["run = { end_time = \"10 s\" }"]), Model::B);
     let judged = long.run_judged(1e-7).unwrap();
-    let kept = long.run_with_history(1e-7).unwrap();
+    let recorded = long.run_with_history(1e-7).unwrap();
     assert!(judged.history.len() < 6_000, "{}", judged.history.len());
-    assert!(kept.history.len() < SAMPLES_BETWEEN + 2_000, "{}", kept.history.len());
+    assert!(recorded.history.len() < SAMPLES_BETWEEN + 2_000, "{}", recorded.history.len());
     assert_eq!(judged.summary.samples, None);
-    assert_eq!(kept.summary.samples, Some(kept.history.len()));
-    for Outcome { summary, history } in [&judged, &kept] {
+    assert_eq!(recorded.summary.samples, Some(recorded.history.len()));
+    for Outcome { summary, history } in [&judged, &recorded] {
         for name in ["efficiency", "outer_force_peak", "inner_contact_end"] {
             assert_eq!(summary.value(name), short.summary.value(name), "{name}");
         }
@@ -54,7 +54,7 @@ fn a_run_that_goes_on_for_seconds_after_its_impact_has_few_samples() {
     }
     // the impact itself is sampled as finely as without the flight
     let during = |outcome: &Outcome| outcome.history.time.iter().filter(|t| **t < 150e-6).count();
-    assert_eq!(during(&kept), during(&short));
+    assert_eq!(during(&recorded), during(&short));
 }
 
 #[test]
@@ -91,9 +91,9 @@ fn a_squeeze_film_takes_a_share_of_the_energy_that_was_there() {
     ]);
     let summary = Reduced::new(&Scene::parse("film.toml", &film).unwrap(), Model::B, Some(4)).unwrap();
     let summary = summary.run(1e-4).unwrap();
-    let told =
+    let text =
         summary.warnings.iter().find_map(|w| w.strip_prefix("the squeeze film dissipates ")).expect("told");
-    let share: f64 = told.split(' ').next().unwrap().parse().unwrap();
+    let share: f64 = text.split(' ').next().unwrap().parse().unwrap();
     let mass = 4.0 / 3.0 * std::f64::consts::PI * 1.5e-3_f64.powi(3) * 7780.0;
     let all = 0.5 * mass * (0.05_f64.powi(2) + 0.5_f64.powi(2));
     assert_relative_eq!(share, 100.0 * summary.losses.unwrap().squeeze_film / all, max_relative = 0.01);
@@ -149,17 +149,17 @@ fn a_bender_bent_beyond_linear_theory_is_warned_of() {
     let limit = |speed: &str| {
         let summary = summary(&text.replace("300 mm/s", speed), Model::B);
         let limit = summary.limits.iter().find(|l| l.measure == "outer_tip_deflection_over_length");
-        let told = summary.warnings.iter().any(|w| w.contains("linear beam theory"));
+        let warned = summary.warnings.iter().any(|w| w.contains("linear beam theory"));
         let deflection = summary.bender.expect("a bender").drive.tip_deflection;
         assert_relative_eq!(limit.expect("a limit").value, deflection / 13.7e-3, max_relative = 1e-12);
-        (deflection / 13.7e-3, told)
+        (deflection / 13.7e-3, warned)
     };
-    let (little, told) = limit("300 mm/s");
-    assert!((0.005..0.02).contains(&little) && !told, "{little} {told}");
+    let (little, warned) = limit("300 mm/s");
+    assert!((0.005..0.02).contains(&little) && !warned, "{little} {warned}");
     // deflection and speed grow together
-    let (much, told) = limit("12 m/s");
+    let (much, warned) = limit("12 m/s");
     assert_relative_eq!(much, 40.0 * little, max_relative = 1e-9);
-    assert!(told);
+    assert!(warned);
 }
 
 const STACK: &str = r#"outer = { kind = "stack", length = "18 mm", area = "25 mm^2", stroke = "17.4 um", blocked_force = "850 N", voltage = "150 V", capacitance = "1.4 uF", density = "8000 kg/m^3", tip_radius = "4 mm", gap = "3 um", material = "steel""#;
@@ -231,7 +231,7 @@ fn contacts_on_a_plate_thinner_than_their_patches_find_an_equilibrium() {
 
 /// A contact that turns from loading to unloading within a step has the slope of the other side; the plate under it answers to both contacts.
 #[test]
-fn contacts_that_yield_find_an_equilibrium_where_they_turn() {
+fn plastic_contacts_find_an_equilibrium_at_greatest_approach() {
     let yielding = changed(&[
         "materials.plate = { youngs_modulus = \"200 GPa\", poisson_ratio = 0.29, density = \"8000 kg/m^3\", yield_strength = 243947438.23819935, hardening = 661610720.1682781 }",
         "materials.outer = { youngs_modulus = \"200 GPa\", poisson_ratio = 0.29, density = \"8000 kg/m^3\", yield_strength = 1156215417.73127, hardening = 266887355.42799073 }",

@@ -12,9 +12,10 @@ use std::f64::consts::PI;
 
 #[test]
 fn sphere_rebounds_from_a_rigid_half_space() {
-    let held = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
+    let rigid_plate =
+        ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     for (radius, speed) in [(0.01, 0.55), (0.001, 1e-4), (0.05, 50.0)] {
-        let system = common::scaled_plate(radius, speed).rigid_system(&held, [0.0; 2]);
+        let system = common::scaled_plate(radius, speed).rigid_system(&rigid_plate, [0.0; 2]);
         let result = integrate(&system, &Options { tolerance: 1e-9, ..Options::default() }).unwrap();
         let closed = HertzImpact { mass: system.masses[0], speed, stiffness: system.laws[0].stiffness };
         let contact = result.contacts[0];

@@ -62,7 +62,7 @@ fn same_velocities_as_runge_kutta() {
 }
 
 #[test]
-fn momentum_and_energy_are_kept() {
+fn momentum_and_energy_are_conserved() {
     for (name, setup) in cases() {
         let result = run(&system(&setup, 16), 1e-7);
         println!("{name}: momentum {:.1e}, energy {:.1e}", result.momentum_residual, result.energy_residual);

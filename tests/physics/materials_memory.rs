@@ -100,14 +100,15 @@ fn the_history_of_an_impact_that_nothing_remembers_is_the_elastic_one() {
 /// A Maxwell sphere on a rigid wall loses (4/9) T/tau of its speed in a contact that is short against tau (Hunter, The Hertz contact
 /// problem, J. Mech. Phys. Solids 8, 1960, 219).
 #[test]
-fn a_viscoelastic_sphere_rebounds_as_hunter_says() {
-    let held = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
+fn a_viscoelastic_sphere_rebounds_as_in_hunters_theory() {
+    let rigid_plate =
+        ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     let mut setup = common::scaled_plate(0.01, 0.55);
     setup.plate.material.youngs_modulus = 1e17;
-    let duration = setup.rigid_system(&held, [0.0; 2]).hertz_impact().duration();
+    let duration = setup.rigid_system(&rigid_plate, [0.0; 2]).hertz_impact().duration();
     for ratio in [0.01, 0.02] {
         setup.outer.material.relaxation = vec![Relaxation { ratio: 1.0, time: duration / ratio }];
-        let system = setup.rigid_system(&held, [0.0; 2]);
+        let system = setup.rigid_system(&rigid_plate, [0.0; 2]);
         let result = run(&setup, &system);
         let lost = 1.0 - result.velocity[0] / setup.outer.speed;
         // the next order in T/tau is left out
@@ -120,17 +121,18 @@ fn a_viscoelastic_sphere_rebounds_as_hunter_says() {
 /// which Jackson, Green & Marghitu's law (Nonlinear Dynamics 60, 2010, 217) differs by 1 to 8 %; the size of the sphere has no part in it.
 #[test]
 fn a_yielding_sphere_rebounds_as_in_finite_elements() {
-    let held = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
+    let rigid_plate =
+        ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
     let restitution = |radius: f64, ratio: f64| {
         let mut setup = common::scaled_plate(radius, 1.0);
         setup.plate.material.youngs_modulus = 1e17;
         yielding(600e6)(&mut setup.outer.material);
-        let system = setup.rigid_system(&held, [0.0; 2]);
+        let system = setup.rigid_system(&rigid_plate, [0.0; 2]);
         let critical = setup.memory(&system).unwrap().unwrap().critical_forces([0.0; 2])[0];
         // Hertz: 2/5 F_c x_c is the energy at the onset
         let energy = 0.4 * critical * system.laws[0].approach(critical);
         setup.outer.speed = ratio * (2.0 * energy / system.masses[0]).sqrt();
-        let system = setup.rigid_system(&held, [0.0; 2]);
+        let system = setup.rigid_system(&rigid_plate, [0.0; 2]);
         run(&setup, &system).velocity[0] / setup.outer.speed
     };
     for (ratio, found) in
@@ -177,18 +179,18 @@ fn a_polymer_plate_loses_two_points() {
 
 /// Far beyond the loads its law was found for a contact that yields is warned of, and then refused.
 #[test]
-fn a_yield_strength_far_below_the_pressure_is_told() {
+fn a_yield_strength_far_below_the_pressure_has_a_warning() {
     let memory = |strength: f64| {
         let setup = with(common::scaled_plate(0.01, 0.55), yielding(strength));
         let system = setup.rigid_system(&kirchhoff::modes(&setup.plate, 4).unwrap(), [0.0; 2]);
         setup.memory(&system)
     };
-    let told = |strength: f64| memory(strength).unwrap().unwrap().warnings.join("; ");
+    let warnings_of = |strength: f64| memory(strength).unwrap().unwrap().warnings.join("; ");
     assert!(
-        !told(600e6).contains("up to 110 times")
-            && told(1e8).contains("compared with finite elements up to 110 times"),
+        !warnings_of(600e6).contains("up to 110 times")
+            && warnings_of(1e8).contains("compared with finite elements up to 110 times"),
         "{}",
-        told(1e8)
+        warnings_of(1e8)
     );
     assert!(memory(1e6).unwrap_err().to_string().contains("yield_strength"));
 }
@@ -248,7 +250,7 @@ fn a_relaxing_plate_has_the_frequency_of_its_storage_modulus() {
 
 /// What the models do not cover is no scene, and what they leave open they say.
 #[test]
-fn what_is_not_covered_is_refused_and_what_is_open_is_told() {
+fn uncovered_materials_are_refused_and_open_questions_have_a_warning() {
     let plastic = "materials.b = { youngs_modulus = 210e9, poisson_ratio = 0.3, density = 7780, yield_strength = 6e8, hardening = 0 }";
     let relaxing = "materials.c = { youngs_modulus = 2e9, poisson_ratio = 0.3, density = 1000, relaxation = [{ ratio = 0.1, time = 1e-5 }] }";
     let fluid = "fluid = { viscosity = 1e-3, density = 1e3, minimum_gap = 1e-6 }";

@@ -50,8 +50,8 @@ fn fresh_spots_stay_below_the_elastic_efficiency() {
     let found = efficiencies(&fresh);
     let elastic = series("scaled-plate-r10", Model::B, "", "6000 MPa").value("efficiency").unwrap();
     assert_eq!(found.len(), 8);
-    let told = |warning: &String| warning.contains("finite elements");
-    assert!(!fresh.warnings.iter().any(told), "{:?}", fresh.warnings);
+    let warned = |warning: &String| warning.contains("finite elements");
+    assert!(!fresh.warnings.iter().any(warned), "{:?}", fresh.warnings);
     assert!(found[0] < found[7] && found[7] < 0.95 * elastic, "{found:?} {elastic}");
 }
 
@@ -60,7 +60,7 @@ fn fresh_spots_stay_below_the_elastic_efficiency() {
 /// first impact).
 #[test]
 #[allow(clippy::approx_constant, reason = "one efficiency happens to be near 2/pi")]
-fn surfaces_that_yield_unlike_shake_down_as_in_finite_elements() {
+fn surfaces_of_unequal_yield_strength_shake_down_as_in_finite_elements() {
     // Young's modulus in GPa, Poisson's ratio, density in kg/m^3; tangent modulus E/200 but of steel 2.1 GPa
     let (steel, aluminium) = ([210.0, 0.3, 7780.0], [70.0, 0.33, 2700.0]);
     let (titanium, bronze) = ([115.0, 0.37, 4430.0], [110.0, 0.34, 8800.0]);
@@ -162,8 +162,8 @@ fn two_humps_of_a_force_are_no_jump() {
         let text = text.replace("MPa\" }", "MPa\", hardening = 0 }");
         let scene = Scene::parse("humps", &text).unwrap();
         let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-7).unwrap();
-        let settled = !summary.warnings.iter().any(|warning| warning.contains("uncertain by"));
-        assert!(settled, "{strength} MPa: {:?}", summary.warnings);
+        let steady = !summary.warnings.iter().any(|warning| warning.contains("uncertain by"));
+        assert!(steady, "{strength} MPa: {:?}", summary.warnings);
         summary.value("efficiency").unwrap()
     };
     let found: Vec<f64> = (0..=10).map(|k| of(90.0 + 2.0 * f64::from(k))).collect();
@@ -173,7 +173,7 @@ fn two_humps_of_a_force_are_no_jump() {
 
 /// Bending is told of forces at the plate's centre that were found to their ends.
 #[test]
-fn the_plate_s_bending_is_told_where_it_is_known() {
+fn the_plate_s_bending_stress_is_reported_where_it_is_known() {
     let of = |outer: &str, more: &str| {
         let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();
         let density = "density        = \"7780 kg/m^3\"";
@@ -189,8 +189,8 @@ fn the_plate_s_bending_is_told_where_it_is_known() {
             summary.elastic_limit.and_then(|limit| limit.outer),
         )
     };
-    let (told, limit) = of("", "");
-    assert!(told && limit.is_some());
+    let (warned, limit) = of("", "");
+    assert!(warned && limit.is_some());
     assert!(!of("offset = \"8 mm\"", "").0);
     assert_eq!(of("", "\n[run]\nend_time = \"5 us\"\n"), (false, None));
 }
@@ -237,7 +237,7 @@ fn the_elastic_limit_is_where_the_model_begins_to_yield() {
             [!soft[2], !soft[0]],
             "{limit:?}"
         );
-        let told = limit.outer.into_iter().chain(limit.inner).reduce(f64::min);
+        let predicted = limit.outer.into_iter().chain(limit.inner).reduce(f64::min);
         let yields = |speed: f64| struck(soft, plate, speed, model).impacts[0].plastic_work != Some(0.0);
         let (mut low, mut high) = (0.001, 0.1);
         assert!(!yields(low) && yields(high));
@@ -245,7 +245,7 @@ fn the_elastic_limit_is_where_the_model_begins_to_yield() {
             let middle = 0.5 * (low + high);
             if yields(middle) { high = middle } else { low = middle }
         }
-        assert_relative_eq!(told.unwrap(), high, max_relative = 3e-4);
+        assert_relative_eq!(predicted.unwrap(), high, max_relative = 3e-4);
     }
     assert_eq!(struck([false; 3], plate, 0.55, Model::B).elastic_limit, None);
 }

@@ -195,7 +195,7 @@ impl Profile for Around {
 }
 
 #[test]
-fn overlap_beside_the_axis_is_told() {
+fn overlap_off_the_axis_has_a_warning() {
     let film = sphere(1e-7, 512);
     // deepest at x = -slope/(2 curve), by slope^2/(4 curve)
     let (slope, curve) = (-20.0f64, 2e7);
@@ -232,7 +232,7 @@ fn the_film_begins_where_the_overlap_around_the_axis_first_ends() {
 }
 
 #[test]
-fn a_pocket_between_two_overlaps_is_told() {
+fn a_pocket_between_two_overlaps_has_a_warning() {
     // zeros of the gap at x = 1e-6 and 3.2e-6 m^2: the bodies overlap around the axis and again up to the rim, there less
     // deeply than on the axis
     struct Pocket;

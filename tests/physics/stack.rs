@@ -62,7 +62,7 @@ fn by_steps(stack: &Stack, end: f64, h: f64) -> (f64, [f64; 2]) {
     };
     let rate = |w: &[f64]| -> Vec<f64> {
         let x: f64 = rod.iter().zip(w).map(|(m, q)| m.tip * q).sum();
-        let volts = (w[2 * size] - alpha * x) / stack.held_capacitance();
+        let volts = (w[2 * size] - alpha * x) / stack.clamped_capacitance();
         let buffer = stack.voltage - supply.buffer_capacitance.map_or(0.0, |c| w[2 * size] / c);
         let [outer, inner] = forces(w);
         let mut rate = w[size..2 * size].to_vec();
@@ -112,12 +112,13 @@ fn stack_and_circuit_strike_as_their_equations_say() {
 #[test]
 fn a_small_resistance_is_none() {
     for gap in [0.0, 5e-6] {
-        let (_, held) = run(stack(gap, None));
+        let (_, without_drive) = run(stack(gap, None));
         let (_, behind) = run(stack(gap, Some(Supply { resistance: 1e-4, buffer_capacitance: None })));
-        assert_relative_eq!(held.velocity[1], behind.velocity[1], max_relative = 1e-3);
-        let [held, behind] = [&held, &behind].map(|result| result.supplied.expect("a stack"));
-        assert_relative_eq!(held.taken, behind.taken, max_relative = 0.02);
-        assert!(held.rest.abs() < 1e-9 * held.taken, "{held:?}");
+        assert_relative_eq!(without_drive.velocity[1], behind.velocity[1], max_relative = 1e-3);
+        let [without_drive, behind] =
+            [&without_drive, &behind].map(|result| result.supplied.expect("a stack"));
+        assert_relative_eq!(without_drive.taken, behind.taken, max_relative = 0.02);
+        assert!(without_drive.rest.abs() < 1e-9 * without_drive.taken, "{without_drive:?}");
     }
 }
 
@@ -185,7 +186,7 @@ fn a_stack_that_presses_on_leaves_its_own_end_open() {
 }
 
 #[test]
-fn a_stack_that_does_not_come_to_the_plate_is_told() {
+fn a_stack_that_does_not_reach_the_plate_is_reported() {
     let far = stack(34e-6, Some(Supply { resistance: 50.0, buffer_capacitance: None }));
     let said = MovingBody::outer(&setup(far).outer).unwrap_err().to_string();
     assert!(said.contains("`outer.gap` is 0.000034 m") && said.contains("never reaches"), "{said}");

@@ -98,7 +98,7 @@ fn best_is_a_contact_of_about_half_the_first_period_whatever_the_thickness() {
 }
 
 #[test]
-fn a_polymer_plate_loses_what_the_paper_says_and_finite_elements_find() {
+fn a_polymer_plate_loses_as_much_as_in_the_paper_and_in_finite_elements() {
     let study = run("damping", None);
     assert!(study.claims.iter().all(|c| c.verdict == Verdict::Pass), "{:?}", study.claims);
     let by = |name| study.rows.iter().filter(|row| row[0] == Cell::Text(name)).count();
@@ -108,7 +108,7 @@ fn a_polymer_plate_loses_what_the_paper_says_and_finite_elements_find() {
 }
 
 #[test]
-fn repeated_impacts_shake_down_as_the_paper_says() {
+fn repeated_impacts_shake_down_as_in_the_paper() {
     let study = run("shakedown", Some(Model::B));
     assert_eq!(study.claims.len(), 10);
     assert!(study.claims.iter().all(|c| c.verdict == Verdict::Pass), "{:?}", study.claims);

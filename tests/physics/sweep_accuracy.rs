@@ -34,7 +34,7 @@ fn error(ours: &PlateQuantities, exact: &PlateQuantities, speed: f64) -> (f64, b
 
 /// Of a bound on the velocities alone 1 in 14 of these had a wrong number of contacts, and 1 in 100 a force peak wrong by 0.7 to 4 %.
 #[test]
-fn points_of_a_sweep_are_within_their_tolerance_or_say_so() {
+fn points_of_a_sweep_are_within_their_tolerance_or_have_a_warning() {
     const POINTS: usize = 150;
     const TOLERANCE: f64 = 1e-3;
     let bodies = SharedBodies::default();

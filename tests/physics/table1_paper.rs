@@ -21,7 +21,7 @@ fn efficiencies_of_models_a_and_b() {
 }
 
 #[test]
-fn model_b_is_as_far_from_the_papers_abaqus_as_section_3_3_says() {
+fn model_b_differs_from_the_papers_abaqus_as_in_section_3_3() {
     for (scene, paper) in [("scaled-plate-r10", 0.69), ("scaled-plate-r6.35", 0.39)] {
         assert_abs_diff_eq!(run(scene, Model::B, 1e-7).value("efficiency").unwrap(), paper, epsilon = 0.03);
     }

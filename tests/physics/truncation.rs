@@ -25,7 +25,7 @@ fn estimated_and_true(scene: &Scene, model: Model, modes: usize, many: (Model, u
 
 /// From a plate whose modes are too few by far to one with enough of them.
 #[test]
-fn kirchhoff_models_tell_their_distance_from_all_modes_of_their_plate() {
+fn kirchhoff_models_report_their_distance_from_all_modes_of_their_plate() {
     for (radius, model, modes) in [
         ("33 mm", Model::A, 1),
         ("33 mm", Model::B, 3),
@@ -43,7 +43,7 @@ fn kirchhoff_models_tell_their_distance_from_all_modes_of_their_plate() {
 
 /// Model C stops to add modes at 64: on a wide plate it says that they are not enough.
 #[test]
-fn model_c_tells_what_its_modes_lack() {
+fn model_c_reports_its_truncation_error() {
     for (radius, modes) in [("33 mm", 2), ("33 mm", 4), ("33 mm", 16), ("0.65 m", 48), ("0.65 m", 64)] {
         let (estimated, warned, exact) =
             estimated_and_true(&scene(radius), Model::C, modes, (Model::C, 2 * modes + 8));
@@ -90,7 +90,7 @@ inner = { kind = "compact", mass = "7.77 g", tip_radius = "2.8 mm", material = "
 
 /// Table 1's impact a little beside the centre: twice as many modes may all have nodal diameters through it.
 #[test]
-fn modes_beside_the_centre_tell_their_distance_from_many() {
+fn off_centre_modes_report_their_truncation_error() {
     let text = std::fs::read_to_string(resolve("scaled-plate-r10").unwrap()).unwrap();
     for (offset, model, modes) in [
         ("0.5 mm", Model::A, 1),

@@ -211,7 +211,7 @@ fn no_film_makes_the_integration_fail() {
 }
 
 #[test]
-fn drag_slows_the_inner_body_as_its_square_law_says() {
+fn drag_slows_the_inner_body_by_its_square_law() {
     let setup = valve(Fluid { squeeze_film: false, drag_coefficient: 0.4, ..water() });
     let wet = Wet::new(&setup, 8);
     let (early, late) = (100e-6, 10e-3);

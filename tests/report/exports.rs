@@ -204,7 +204,7 @@ fn names_with_markup_are_escaped() {
 }
 
 #[test]
-fn terminal_has_a_line_per_model_and_says_what_failed() {
+fn terminal_has_a_line_per_model_and_lists_what_failed() {
     let data = Data::new();
     let text = terminal(&data.report(), Width::Narrow);
     assert_eq!(text.lines().filter(|l| l.trim_start().starts_with("reference ")).count(), 1);
@@ -292,8 +292,8 @@ fn the_document_of_many_scenes_fits_into_a_comment() {
         let text = many(count);
         assert!(text.chars().count() < 65_536 - 2_000, "{count}: {}", text.chars().count());
         let listed = (0..count).filter(|k| text.contains(&format!("| plate-{k:03} |"))).count();
-        let left_out = text.contains(&format!("{} more scenes", count - listed));
-        assert!(listed == count || (count == 400 && left_out), "{listed} of {count}");
+        let omitted = text.contains(&format!("{} more scenes", count - listed));
+        assert!(listed == count || (count == 400 && omitted), "{listed} of {count}");
         if count > 1 {
             let failed = format!("\n## plate-{:03}: fail\n", count - 2);
             let (_, after) = text.split_once(&failed).expect("the one that fails is there");

@@ -92,11 +92,11 @@ fn the_scene_is_drawn_to_scale_with_its_numbers() {
     assert!((number(&disc, "height") / scale / plate.thickness - 1.0).abs() < 1e-2);
     // the outer sphere touches the plate, the inner one is as far from it as the scene says
     let (top, height) = (number(&disc, "y"), number(&disc, "height"));
-    let touches = number(&above, "cy") + number(&above, "r") - top;
+    let distance = number(&above, "cy") + number(&above, "r") - top;
     let gap = number(&below, "cy") - number(&below, "r") - top - height;
-    assert!(touches.abs() < 0.1 && (gap / scale - 4e-3).abs() < 1e-4, "{touches} {gap}");
-    for told in ["radius 33 mm", "thickness 2 mm", "simply supported", "550 mm/s", "gap 4 mm", "E 210 GPa"] {
-        assert!(figure.contains(told), "{told}");
+    assert!(distance.abs() < 0.1 && (gap / scale - 4e-3).abs() < 1e-4, "{distance} {gap}");
+    for fact in ["radius 33 mm", "thickness 2 mm", "simply supported", "550 mm/s", "gap 4 mm", "E 210 GPa"] {
+        assert!(figure.contains(fact), "{fact}");
     }
 }
 
@@ -120,8 +120,8 @@ fn the_answer_is_the_terminals_and_no_better_than_the_discrepancies() {
     for model in &report.scenes[0].comparison.models {
         let sentence = between(&page, &format!("<li data-model=\"{}\">", model.model), "</li>");
         let of = |group: &str| {
-            let told = sentence.split(&format!("{group} ")).nth(1).unwrap().split(" %").next().unwrap();
-            told.split(' ').next_back().unwrap().parse::<f64>().unwrap()
+            let stated = sentence.split(&format!("{group} ")).nth(1).unwrap().split(" %").next().unwrap();
+            stated.split(' ').next_back().unwrap().parse::<f64>().unwrap()
         };
         let worst = |names: &[&str]| {
             let sizes = names.iter().map(|n| 100.0 * model.discrepancy(n).unwrap().relative.unwrap().abs());
@@ -132,8 +132,8 @@ fn the_answer_is_the_terminals_and_no_better_than_the_discrepancies() {
             ("peak force", &["outer_force_peak", "inner_force_peak"]),
             ("contact ends", &["outer_contact_end", "inner_contact_end"]),
         ] {
-            let (told, found) = (of(group), worst(names));
-            assert!(told >= found && told <= 1.11 * found + 1e-9, "{group}: {told} for {found}");
+            let (stated, found) = (of(group), worst(names));
+            assert!(stated >= found && stated <= 1.11 * found + 1e-9, "{group}: {stated} for {found}");
         }
     }
     // what nothing computed backs is not said

@@ -71,9 +71,9 @@ fn the_elastic_limit_of_a_model_stands_in_its_range_of_validity() {
     assert!(scene_page(&data.report().scenes[0]).contains("Elastic limit not checked"));
     data.reduced[1].summary.elastic_limit = Some(ElasticLimit { outer: Some(0.0123), inner: None });
     let page = scene_page(&data.report().scenes[0]);
-    let told = "nothing yields in the outer contact up to 12.3 mm/s, in the inner one at no speed found";
+    let sentence = "nothing yields in the outer contact up to 12.3 mm/s, in the inner one at no speed found";
     assert!(
-        page.contains(told) && !page.contains("Elastic limit not checked"),
+        page.contains(sentence) && !page.contains("Elastic limit not checked"),
         "{}",
         between(&page, "Elastic limit", "</p>")
     );

@@ -114,7 +114,7 @@ fn every_mark_stands_where_its_scene_lies() {
 }
 
 #[test]
-fn the_sentence_says_what_is_near_by_and_what_is_not() {
+fn the_sentence_states_which_scenes_are_similar() {
     let known = known();
     let sentence = |known: Vec<Validation>, model: &str| {
         let ([page, ..], place) = pages(known);
@@ -122,7 +122,7 @@ fn the_sentence_says_what_is_near_by_and_what_is_not() {
         (between(&page, &start, "</li>").to_owned(), place)
     };
     for (model, starts) in [("B", "differs by up to "), ("C", "agrees within ")] {
-        let (told, here) = sentence(known.clone(), model);
+        let (stated, here) = sentence(known.clone(), model);
         let hash = &known.iter().find(|v| v.scene == "scaled-plate-r10").unwrap().scene_hash;
         let near: Vec<f64> = known
             .iter()
@@ -131,24 +131,24 @@ fn the_sentence_says_what_is_near_by_and_what_is_not() {
             .map(|v| v.worst().unwrap().relative().abs())
             .collect();
         let ending = format!(" % in {} similar scenes", near.len());
-        let (before, _) = told.split_once(&ending).unwrap_or_else(|| panic!("{told}"));
-        let (_, percent) = before.rsplit_once(starts).unwrap_or_else(|| panic!("{told}"));
+        let (before, _) = stated.split_once(&ending).unwrap_or_else(|| panic!("{stated}"));
+        let (_, percent) = before.rsplit_once(starts).unwrap_or_else(|| panic!("{stated}"));
         let (percent, worst) = (percent.parse::<f64>().unwrap(), near.iter().fold(0.0_f64, |a, b| a.max(*b)));
-        assert!(percent >= 100.0 * worst && percent <= 111.0 * worst, "{told}: {worst}");
+        assert!(percent >= 100.0 * worst && percent <= 111.0 * worst, "{stated}: {worst}");
     }
     // without those near by, and without those as far out
     let ([..], here) = pages(Vec::new());
     let far: Vec<Validation> =
         known.iter().filter(|v| here.factor(&v.place.unwrap()) > 2.0).cloned().collect();
-    let (told, _) = sentence(far.clone(), "C");
-    assert!(told.contains("no similar scene was compared; nearest "), "{told}");
+    let (stated, _) = sentence(far.clone(), "C");
+    assert!(stated.contains("no similar scene was compared; nearest "), "{stated}");
     let patch = |v: &Validation| v.place.unwrap().patch_over_thickness;
     let narrow: Vec<Validation> = far.into_iter().filter(|v| patch(v) < here.patch_over_thickness).collect();
-    let (told, _) = sentence(narrow, "C");
+    let (stated, _) = sentence(narrow, "C");
     assert!(
-        told.contains("no similar scene was compared (patch/thickness 0.153, compared up to 0.15"),
-        "{told}"
+        stated.contains("no similar scene was compared (patch/thickness 0.153, compared up to 0.15"),
+        "{stated}"
     );
-    let (told, _) = sentence(Vec::new(), "C");
-    assert!(!told.contains("validated"), "{told}");
+    let (stated, _) = sentence(Vec::new(), "C");
+    assert!(!stated.contains("validated"), "{stated}");
 }

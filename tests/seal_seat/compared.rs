@@ -71,7 +71,7 @@ fn comparison_passes_the_model_and_fails_whatever_is_tampered_with() {
 /// The reference's launch flies in the model's chamber; a model that throws the sphere too weakly has another share of shifts, which a
 /// tolerance holds.
 #[test]
-fn the_reference_s_launch_flies_beside_the_model_s() {
+fn the_launches_of_reference_and_model_have_the_same_flight() {
     let text = std::fs::read_to_string(fixture("seal-seat.toml")).expect("scene");
     let flight =
         "[flight]\nchamber_height = 0.02\nfriction = 0.2\nrestitution = 0.5\n[flight.spring]\nforce = 0.04\n";

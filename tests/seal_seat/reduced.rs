@@ -5,7 +5,7 @@
 use assert_cmd::Command;
 use impactcheck::body::cache::Cache;
 use impactcheck::kinds::seal_seat::SeatQuantities;
-use impactcheck::kinds::seal_seat::{Partner, SeatMesh, SeatModel, Zones};
+use impactcheck::kinds::seal_seat::{ContactBody, SeatMesh, SeatModel, Zones};
 use impactcheck::result::Summary;
 use impactcheck::scene::{Model, Scene};
 use serde_json::Value;
@@ -63,7 +63,7 @@ fn first_ten_frequencies_are_those_of_slepc_on_the_same_mesh() {
 }
 
 #[test]
-fn ledgers_of_energy_and_momentum_balance() {
+fn energy_and_momentum_balance() {
     let result = sixteen().integrate(0.25e-6, false).expect("run");
     assert!(result.energy_residual < 1e-4, "{}", result.energy_residual);
     assert!(result.momentum_residual < 1e-12, "{}", result.momentum_residual);
@@ -182,10 +182,10 @@ fn a_node_that_stands_alone_in_its_zone_has_candidates_around_it() {
     let setup = scene.seal_seat().expect("seal seat");
     let narrow = Zones { ring: 1e-9, tip: 1e-9 };
     let body = mesh().body(setup, &narrow, 1, &Cache::off()).expect("body");
-    for partner in [Partner::Sphere, Partner::Tip(0), Partner::Tip(1)] {
-        let offsets = body.candidates.iter().filter(|c| c.partner == partner).map(|c| c.offset);
+    for contact_body in [ContactBody::Sphere, ContactBody::Tip(0), ContactBody::Tip(1)] {
+        let offsets = body.candidates.iter().filter(|c| c.contact_body == contact_body).map(|c| c.offset);
         let (inside, around): (Vec<f64>, Vec<f64>) = offsets.partition(|offset| *offset <= 1e-9);
-        assert!(!inside.is_empty() && around.len() >= 4, "{partner:?}: {inside:?} {around:?}");
+        assert!(!inside.is_empty() && around.len() >= 4, "{contact_body:?}: {inside:?} {around:?}");
     }
 }
 
@@ -197,15 +197,15 @@ fn candidates_lie_on_the_exact_surfaces() {
     let mut on_ring = 0;
     for candidate in &sixteen().system().candidates {
         let [x, y, z] = candidate.place.into();
-        match candidate.partner {
-            Partner::Sphere => {
+        match candidate.contact_body {
+            ContactBody::Sphere => {
                 // a cone that touches the sphere: r^2 + d^2 at the distance d from the ring
                 let distance = (x - cx).hypot(y).hypot(z - cz);
                 let expected = setup.sphere.radius.hypot(candidate.offset);
                 assert!((distance - expected).abs() < 1e-9, "{distance} {expected}");
                 on_ring += usize::from(candidate.offset < 1e-9);
             }
-            Partner::Tip(tip) => {
+            ContactBody::Tip(tip) => {
                 assert_eq!(z, 0.0);
                 let near = (x - setup.actuator.tip_positions[tip]).hypot(y);
                 assert!((near - candidate.offset).abs() < 1e-15);
@@ -292,7 +292,7 @@ fn what_a_seal_seat_has_not_is_refused_in_one_sentence() {
 }
 
 #[test]
-fn the_mesh_of_another_design_is_refused_and_one_that_does_not_tell_is_warned_of() {
+fn the_mesh_of_another_design_is_refused_and_one_without_geometry_has_a_warning() {
     let folder = tempfile::tempdir().expect("folder");
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     // as another program would pass it on: without the description beside it
@@ -303,17 +303,17 @@ fn the_mesh_of_another_design_is_refused_and_one_that_does_not_tell_is_warned_of
     let (status, output, error) = impactcheck(&arguments, folder.path());
     assert_eq!((status, output.as_str()), (12, ""), "{error}");
     assert!(error.contains("not one of this seat: it was made for another geometry"), "{error}");
-    let told = |mesh: &SeatMesh| {
+    let is_warned = |mesh: &SeatMesh| {
         let model = SeatModel::new(&scene(), Model::C, Some(4), mesh, &Cache::off()).expect("model");
         model.run(1e-2).expect("run").warnings.join(" ")
     };
-    assert!(told(&super::reduced::mesh()).contains("has no record of its geometry"));
+    assert!(is_warned(&super::reduced::mesh()).contains("has no record of its geometry"));
     let text = std::fs::read_to_string(super::reduced::mesh().path()).expect("mesh");
     let hash = scene().seal_seat().expect("seat").geometry_hash();
     let own = folder.path().join("own.vtu");
     let noted = text.replacen('\n', &format!("\n<!--geometry_hash {hash}-->\n"), 1);
     std::fs::write(&own, noted).expect("written");
-    assert!(!told(&SeatMesh::open(&own).expect("mesh")).contains("geometry"));
+    assert!(!is_warned(&SeatMesh::open(&own).expect("mesh")).contains("geometry"));
 }
 
 /// A stand-in for the mesher, which waits for the second process before it writes a copy of the fixture's mesh.

@@ -69,7 +69,7 @@ fn values_arrive_in_si() {
 
 /// The ring's points lie on the sphere, and the sphere's normal there is that of the cone.
 #[test]
-fn the_ring_is_where_cone_and_sphere_touch() {
+fn the_ring_is_where_cone_and_sphere_meet() {
     for (tilt, aperture) in [(15.0, 120.0), (0.0, 90.0), (30.0, 60.0_f64)] {
         let mut setup = seat(VALID);
         setup.seat.tilt = f64::to_radians(tilt);
@@ -92,7 +92,7 @@ fn the_ring_is_where_cone_and_sphere_touch() {
 }
 
 #[test]
-fn bounds_of_an_angle_are_told_in_the_unit_of_the_value() {
+fn bounds_of_an_angle_are_stated_in_the_unit_of_the_value() {
     for (value, said) in [
         ("\"-3 deg\"", "at least 0 deg and less than 90 deg"),
         ("\"2 rad\"", "at least 0 rad and less than 1.57"),

@@ -61,17 +61,18 @@ fn the_direction_is_smooth_in_the_dimensions() {
             ([1.0, s, s * s, s * s * s], angle.to_degrees())
         };
         let cubic = fit(&(-4..=4).map(row).collect::<Vec<_>>()).expect("nine directions");
-        assert!(cubic.scatter < 0.02, "{name}: {cubic:?}");
-        assert!(cubic.coefficients[1].abs() > 5.0 * cubic.scatter, "{name} turns the flight: {cubic:?}");
+        assert!(cubic.deviation < 0.02, "{name}: {cubic:?}");
+        assert!(cubic.coefficients[1].abs() > 5.0 * cubic.deviation, "{name} turns the flight: {cubic:?}");
     }
 }
 
 #[test]
-fn what_a_mesh_cant_follow_is_told() {
+fn a_shape_that_a_mesh_cannot_follow_is_an_error() {
     let series = series();
-    let told = |scene: &Scene| series.model(scene, Model::C, Some(8)).expect_err("another shape").to_string();
-    assert!(told(&changed(|setup| setup.seat.notch = None)).contains("notch or a tip"));
-    let far = told(&changed(|setup| setup.seat.membrane_thickness *= 0.02));
+    let message =
+        |scene: &Scene| series.model(scene, Model::C, Some(8)).expect_err("another shape").to_string();
+    assert!(message(&changed(|setup| setup.seat.notch = None)).contains("notch or a tip"));
+    let far = message(&changed(|setup| setup.seat.membrane_thickness *= 0.02));
     assert!(far.contains("can't follow the shape so far"), "{far}");
 }
 

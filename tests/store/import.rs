@@ -47,7 +47,7 @@ fn recipes_give_references_that_models_are_judged_by() {
         // what the program does not state, such as the plate's frequency, can't be decided
         assert_eq!(judged.verdict, Verdict::Undecided, "{file}: {judged:?}");
         let open = judged.discrepancy("first_frequency").expect("a row");
-        assert!(open.lacks_reference() && open.is_gated() && open.tolerance.is_none(), "{open:?}");
+        assert!(open.has_no_reference() && open.is_gated() && open.tolerance.is_none(), "{open:?}");
         assert!(open.would_decide.as_ref().is_some_and(|how| how.contains("has no value of it")));
         // it is not the reference of any other speed
         let text = fs::read_to_string(recipe("../../scenes/scaled-plate-r10.toml")).expect("scene");
@@ -63,7 +63,7 @@ fn recipes_give_references_that_models_are_judged_by() {
 
 /// A wrong sign, unit, column or offset contradicts the scene; nothing is stored.
 #[test]
-fn what_a_map_gets_wrong_is_told_and_nothing_is_stored() {
+fn faults_of_a_map_are_reported_and_nothing_is_stored() {
     let folder = tempfile::tempdir().expect("folder");
     let store = Store::open(Some(&folder.path().join("store")));
     let map = fs::read_to_string(recipe("abaqus.toml")).expect("map");

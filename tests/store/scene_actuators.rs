@@ -115,7 +115,7 @@ fn a_magnet_pulls_by_a_curve() {
     for pull in [curve("inductance", &inductance), curve("force", &force)] {
         assert!((speed(&pull) / law - 1.0).abs() < 2e-3, "{} {law}", speed(&pull));
     }
-    for (pull, told) in [
+    for (pull, expected) in [
         ("curve = [{ way = 0, force = 1 }, { way = 0.001, force = 2 }]", "0 to `outer.travel`, 0.002 m"),
         ("curve = [{ way = 0, force = 1 }, { way = 0.002, inductance = 0.06 }]", "of one kind"),
         (
@@ -134,13 +134,13 @@ fn a_magnet_pulls_by_a_curve() {
         let said = Scene::parse("scene.toml", &magnet(pull)).expect_err(pull).to_string();
         let words = said.split(|c: char| c.is_whitespace() || c == '│').filter(|word| !word.is_empty());
         let said = words.collect::<Vec<_>>().join(" ");
-        assert!(said.contains("`outer.curve`") && said.contains(told), "{pull}: {said}");
+        assert!(said.contains("`outer.curve`") && said.contains(expected), "{pull}: {said}");
     }
     refuses(&magnet(""), 16, &["the pull is missing", "outer.stop_inductance", "outer.curve"]);
 }
 
 #[test]
-fn a_stack_that_cannot_be_is_told() {
+fn an_impossible_stack_is_an_error() {
     let stack = |from: &str, to: &str| {
         let keys = "kind = \"stack\"\nlength = 0.018\narea = 25e-6\nstroke = 17.4e-6\nblocked_force = 850\nvoltage = 150\ncapacitance = 1.4e-6\ndensity = 8000\ntip_radius = 0.004";
         let keys = keys.replacen(from, to, 1);

@@ -318,7 +318,7 @@ fn shear_thinning_is_given_in_full_or_not_at_all() {
 }
 
 #[test]
-fn all_faults_are_told_at_once_in_the_order_of_the_file() {
+fn all_faults_are_reported_at_once_in_the_order_of_the_file() {
     let text = edited("\"33 mm\"", "-1").replace("\"550 mm/s\"", "nan").replace("modes", "mode");
     let lines: Vec<usize> = refused(&text).iter().map(|p| p.line).collect();
     assert_eq!(lines, [11, 20, 29]);
@@ -343,7 +343,7 @@ fn struck(keys: &str) -> String {
 }
 
 #[test]
-fn an_impact_beside_the_centre_or_at_an_angle_is_solved_in_three_dimensions() {
+fn an_off_centre_or_oblique_impact_is_solved_in_three_dimensions() {
     let scene = parse(&struck("offset = \"2 mm\"\nangle = \"-30 deg\""));
     let outer = &plate_impact(&scene).outer;
     assert_eq!((outer.offset, outer.is_centred()), (0.002, false));
@@ -357,7 +357,7 @@ fn an_impact_beside_the_centre_or_at_an_angle_is_solved_in_three_dimensions() {
 }
 
 #[test]
-fn what_nobody_solves_beside_the_centre_is_refused() {
+fn an_unsupported_off_centre_impact_is_refused() {
     for (text, words) in [
         (struck("offset = \"-1 mm\""), "outer.offset"),
         (struck("offset = \"33 mm\""), "less than `plate.radius`"),

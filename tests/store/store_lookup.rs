@@ -79,7 +79,7 @@ fn what_is_not_there_is_missing() {
 }
 
 #[test]
-fn a_summary_that_counts_other_samples_is_kept_as_found() {
+fn a_summary_that_counts_other_samples_is_unchanged() {
     let (_root, store, folder) = stored();
     replace(&folder, "history.csv", &HISTORY.lines().take(3).map(|l| format!("{l}\n")).collect::<String>());
     let Lookup::Found(found) = store.find(&scene(), PAPER) else { panic!("not found") };

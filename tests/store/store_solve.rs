@@ -83,7 +83,7 @@ fn flat(error: &Error) -> String {
 const COPY: &str = "cp -r \"$here/prepared\" \"$out\"";
 
 #[test]
-fn a_solid_run_is_told_its_processes_and_where_its_states_are_kept() {
+fn a_solid_run_receives_its_processes_and_the_folder_of_its_states() {
     let bench = Bench::new();
     let mut scene = scene();
     scene.reference.geometry = impactcheck::scene::Geometry::Solid;
@@ -231,7 +231,7 @@ fn an_older_entry_stays_until_a_new_one_is_proven() {
 }
 
 #[test]
-fn a_solution_of_another_scene_of_the_same_name_is_kept_and_found_again() {
+fn a_solution_of_another_scene_of_the_same_name_is_stored_and_found_again() {
     let bench = Bench::new();
     let faster = scene_with("550 mm/s", "600 mm/s");
     write_entry(&bench.path("prepared-faster"), &faster, PAPER);
@@ -246,15 +246,15 @@ fn a_solution_of_another_scene_of_the_same_name_is_kept_and_found_again() {
     };
     assert_eq!(solve(&faster, copy_faster).earlier, None);
     let slower = solve(&scene(), COPY);
-    let kept = slower.earlier.expect("the faster one made room");
-    assert_eq!(found(&faster).folder, kept);
+    let earlier = slower.earlier.expect("the faster one made room");
+    assert_eq!(found(&faster).folder, earlier);
     assert_eq!(found(&faster).outcome.summary.scene_hash, faster.hash());
     assert_eq!(found(&scene()).folder, slower.folder);
     assert_eq!(bench.store.resolutions(&faster), [PAPER]);
     // Computed again, the kept one would be out of date: one of each is there, whatever the order.
     let again = solve(&faster, copy_faster);
     assert_eq!((again.folder, bench.contents().len()), (slower.folder, 2));
-    assert!(!kept.exists() && found(&scene()).folder == again.earlier.expect("kept"));
+    assert!(!earlier.exists() && found(&scene()).folder == again.earlier.expect("kept"));
     // The same scene takes its own place.
     assert_eq!(solve(&faster, copy_faster).earlier, None);
     assert_eq!(bench.contents().len(), 2);
@@ -271,7 +271,7 @@ fn a_solution_of_another_scene_of_the_same_name_is_kept_and_found_again() {
 }
 
 #[test]
-fn scenes_of_one_name_solved_at_once_are_all_kept() {
+fn scenes_of_one_name_solved_at_once_are_all_stored() {
     let bench = Bench::new();
     let scenes: Vec<Scene> = (0..4).map(|k| scene_with("550 mm/s", &format!("{} mm/s", 500 + k))).collect();
     for (k, scene) in scenes.iter().enumerate() {
@@ -297,7 +297,7 @@ fn scenes_of_one_name_solved_at_once_are_all_kept() {
 }
 
 #[test]
-fn who_asks_for_what_is_being_computed_waits_and_takes_it() {
+fn a_request_for_a_running_solution_waits_and_takes_it() {
     let bench = Bench::new();
     // a run ends when as many others wait for it as it is told to expect
     let count = r#"wc -l < "$here/others""#;

@@ -107,7 +107,7 @@ impl Circuit {
         let square = self.stack.force_per_voltage().powi(2);
         let impedance = s * self.supply.resistance + self.supply.elastance();
         let [a, slope] = self.admittance(s);
-        let capacitance = a * square + self.stack.held_capacitance();
+        let capacitance = a * square + self.stack.clamped_capacitance();
         [capacitance * impedance + 1.0, capacitance * self.supply.resistance + slope * square * impedance]
     }
 
@@ -115,8 +115,8 @@ impl Circuit {
     fn poles(&self) -> Result<Vec<Complex<f64>>> {
         // states omega q, v and Q/sqrt(C_S), whose squares are energies; rates over the first frequency
         let n = self.rod.len();
-        let (held, unit) = (self.stack.held_capacitance(), self.rod[0].omega);
-        let coupling = self.stack.force_per_voltage() / held.sqrt();
+        let (capacitance, unit) = (self.stack.clamped_capacitance(), self.rod[0].omega);
+        let coupling = self.stack.force_per_voltage() / capacitance.sqrt();
         let discharge = 1.0 / self.supply.resistance;
         let mut rates = DMatrix::zeros(2 * n + 1, 2 * n + 1);
         for (i, row) in self.rod.iter().enumerate() {
@@ -126,9 +126,9 @@ impl Circuit {
                 rates[(n + i, j)] -= coupling.powi(2) * row.tip * column.tip / column.omega / unit;
             }
             rates[(n + i, 2 * n)] = coupling * row.tip / unit;
-            rates[(2 * n, i)] = discharge / held * coupling * row.tip / row.omega / unit;
+            rates[(2 * n, i)] = discharge / capacitance * coupling * row.tip / row.omega / unit;
         }
-        rates[(2 * n, 2 * n)] = -discharge * (self.supply.elastance() + 1.0 / held) / unit;
+        rates[(2 * n, 2 * n)] = -discharge * (self.supply.elastance() + 1.0 / capacitance) / unit;
         let schur = Schur::try_new(rates, f64::EPSILON, ITERATIONS).ok_or_else(|| {
             Error::Solver("reduced model: the eigenmodes of the stack and its drive are not found".into())
         })?;
@@ -155,7 +155,7 @@ impl Circuit {
         let [a, _] = self.admittance(s);
         let [_, slope] = self.characteristic(s);
         let impedance = s * self.supply.resistance + self.supply.elastance();
-        let residue = -a * (impedance * self.stack.held_capacitance() + 1.0) / slope;
+        let residue = -a * (impedance * self.stack.clamped_capacitance() + 1.0) / slope;
         let start = a * self.stack.force_per_voltage() * self.stack.voltage / (s * slope);
         let real = s.im == 0.0;
         // of both poles of a pair
@@ -213,13 +213,13 @@ impl Circuit {
     /// Charge in C per extension in m that a mode adds.
     fn charge(&self, mode: &CircuitMode) -> Complex<f64> {
         let alpha = self.stack.force_per_voltage();
-        Complex::from(self.stack.held_capacitance()) / (mode.admittance * alpha) + alpha
+        Complex::from(self.stack.clamped_capacitance()) / (mode.admittance * alpha) + alpha
     }
 
     /// The energies in the state (`q`, `v`) of the modes.
     pub fn account(&self, q: &[f64], v: &[f64]) -> Account {
         let Stack { voltage, capacitance, .. } = self.stack;
-        let (alpha, held) = (self.stack.force_per_voltage(), self.stack.held_capacitance());
+        let (alpha, clamped) = (self.stack.force_per_voltage(), self.stack.clamped_capacitance());
         let mut volts = 0.0;
         let mut rod = vec![[0.0; 2]; self.rod.len()];
         for ((mode, q), v) in self.modes.iter().zip(q).zip(v) {
@@ -238,11 +238,11 @@ impl Circuit {
                 let still = offset * shape.tip * alpha / shape.omega.powi(2);
                 0.5 * (v * v + (shape.omega * (q + still)).powi(2))
             });
-            0.5 * held * voltage * voltage + rod.sum::<f64>()
+            0.5 * clamped * voltage * voltage + rod.sum::<f64>()
         };
         let at_rest = self.final_voltage();
         let extension: f64 = rod.iter().zip(&self.rod).map(|([q, _], shape)| shape.tip * q).sum();
-        let moved = held * volts + alpha * extension;
+        let moved = clamped * volts + alpha * extension;
         let charge = capacitance * at_rest + moved;
         let elastance = self.supply.elastance();
         Account {
@@ -280,7 +280,7 @@ mod tests {
         let (n, alpha) = (rod.len(), stack.force_per_voltage());
         let rate = |w: &[f64]| -> Vec<f64> {
             let x: f64 = rod.iter().zip(w).map(|(m, q)| m.tip * q).sum();
-            let volts = (w[2 * n] - alpha * x) / stack.held_capacitance();
+            let volts = (w[2 * n] - alpha * x) / stack.clamped_capacitance();
             let buffer = stack.voltage - supply.buffer_capacitance.map_or(0.0, |c| w[2 * n] / c);
             let mut rate = w[n..2 * n].to_vec();
             rate.extend(rod.iter().zip(w).map(|(m, q)| m.tip * alpha * volts - m.omega.powi(2) * q));
@@ -339,7 +339,7 @@ mod tests {
 
     /// The ledger while nothing touches: taken = held + heat.
     #[test]
-    fn what_the_buffer_loses_is_held_or_heat() {
+    fn what_the_buffer_loses_is_stored_or_heat() {
         for (resistance, buffer) in [(1.0, Some(20e-6)), (30.0, None)] {
             let circuit = circuit(resistance, buffer);
             let state = |t: f64| -> [Vec<f64>; 2] {

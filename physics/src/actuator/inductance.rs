@@ -98,7 +98,7 @@ mod tests {
 
     /// Points of an even gap give its law, however few they are and whatever their distances.
     #[test]
-    fn an_even_gap_is_kept() {
+    fn an_even_gap_stays_even() {
         let of = |x: f64| 1.0 / (50.0 - 16_667.0 * x);
         for ways in [&[0.0, 2e-3][..], &[0.0, 1e-3, 2e-3], &[0.0, 0.4e-3, 0.5e-3, 1.3e-3, 2e-3]] {
             let points: Vec<[f64; 2]> = ways.iter().map(|x| [*x, of(*x)]).collect();

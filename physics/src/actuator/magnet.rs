@@ -148,7 +148,7 @@ mod tests {
 
     /// With so much resistance that the current is there at once the work is i^2 (L_1 - L_0)/2.
     #[test]
-    fn a_held_current_works_by_the_change_of_inductance() {
+    fn a_constant_current_works_by_the_change_of_inductance() {
         let magnet = Magnet { resistance: 1e6, voltage: 1e6, mass: 50.0, ..magnet() };
         let lift = magnet.lift().unwrap();
         assert_relative_eq!(0.5 * magnet.mass * lift.speed.powi(2), 0.5 * 40e-3, max_relative = 1e-3);

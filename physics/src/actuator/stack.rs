@@ -79,7 +79,7 @@ impl Stack {
     }
 
     /// Capacitance in F of the stack held at its length.
-    pub fn held_capacitance(&self) -> f64 {
+    pub fn clamped_capacitance(&self) -> f64 {
         self.capacitance - self.force_per_voltage().powi(2) / self.stiffness()
     }
 
@@ -146,7 +146,7 @@ impl Stack {
             about_rest += 0.5 * (v * v + (mode.omega * q).powi(2));
         }
         // charged at once, the held stack costs as much heat as it keeps
-        let charging = 0.5 * self.held_capacitance() * self.voltage.powi(2);
+        let charging = 0.5 * self.clamped_capacitance() * self.voltage.powi(2);
         Account {
             taken: 2.0 * charging + self.blocked_force * extension,
             held: charging + own,

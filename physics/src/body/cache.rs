@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_is_not_kept_and_a_cache_that_cant_be_written_is_no_error() {
+    fn a_failure_is_not_cached_and_a_read_only_cache_is_no_error() {
         let folder = tempfile::tempdir().expect("folder");
         let failed = Cache::at(folder.path())
             .get_or_build::<f64>(&json!(1), || Err(crate::Error::Solver("singular".into())));

@@ -44,7 +44,7 @@ pub fn sphere_residual(radius: f64, material: &Material, patch_radius: f64) -> f
     let patch = patch_radius.max(SMALL * radius);
     let share = patch_radius / radius;
     // U_n times 2 mu
-    let yielded = |n: f64| match n {
+    let compliance = |n: f64| match n {
         0.0 => (1.0 - 2.0 * nu) / (1.0 + nu),
         1.0 => 0.6 * (1.0 - 2.0 * nu) / (1.0 + nu),
         _ => {
@@ -55,7 +55,7 @@ pub fn sphere_residual(radius: f64, material: &Material, patch_radius: f64) -> f
     let terms = (TERMS * radius / patch).max(40.0) as u32;
     let term = |n: f64| {
         let weight = patch_transform((n + 0.5) * patch / radius);
-        weight * weight * ((2.0 * n + 1.0) * yielded(n) - 4.0 * (1.0 - nu))
+        weight * weight * ((2.0 * n + 1.0) * compliance(n) - 4.0 * (1.0 - nu))
     };
     let series = (0..terms).map(|n| term(f64::from(n))).sum::<f64>() / (8.0 * PI * shear * radius);
     let unit = 1.0 / (material.youngs_modulus * radius);

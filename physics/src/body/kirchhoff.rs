@@ -7,7 +7,7 @@
 //! twice integrated Legendre polynomials, which vanish with their slope at both ends.
 
 use super::ModalBody;
-use super::kept::Kept;
+use super::memo::MemoList;
 use crate::analytical::circular_plate::rigidity;
 use crate::error::Result;
 use crate::numerics::eigenmodes::lowest;
@@ -157,7 +157,7 @@ pub fn modes(plate: &Plate, modes: usize) -> Result<ModalBody> {
 
 /// The unit plates that a series of impacts has needed so far; shared by its threads.
 #[derive(Debug, Default)]
-pub struct UnitPlates(Kept<UnitPlate>);
+pub struct UnitPlates(MemoList<UnitPlate>);
 
 impl UnitPlates {
     /// As [`modes`], without solving an eigenproblem again.
@@ -172,7 +172,7 @@ impl UnitPlates {
     ///
     /// # Errors
     /// As [`UnitPlate::new`].
-    pub(crate) fn rough_modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
+    pub(crate) fn initial_modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
         let poisson_ratio = (10.0 * plate.material.poisson_ratio).round().min(4.0) / 10.0;
         Ok(self.unit(plate.edge, poisson_ratio, modes)?.scale(plate))
     }

@@ -5,9 +5,9 @@ pub mod bending;
 pub mod cache;
 pub mod continuum;
 pub mod free_sphere;
-pub(crate) mod kept;
 pub mod kirchhoff;
 pub mod layer;
+pub(crate) mod memo;
 pub mod off_centre;
 pub mod solid;
 

@@ -94,7 +94,7 @@ mod tests {
     /// (1 - c^2)^2 P R^2/(16 pi D) (Timoshenko & Woinowsky-Krieger, section 64); at the centre, by reciprocity,
     /// (1 - c^2 + 2 c^2 ln c) P R^2/(16 pi D) (section 19).
     #[test]
-    fn all_modes_together_yield_as_a_plate_under_a_force_beside_its_centre() {
+    fn all_modes_together_have_the_compliance_of_a_plate_under_an_off_centre_force() {
         let plate = plate(Edge::Clamped);
         let stiffness = plate.material.youngs_modulus * plate.thickness.powi(3) / (12.0 * (1.0 - 0.09));
         for c in [0.2, 0.5] {
@@ -111,7 +111,7 @@ mod tests {
 
     /// Few modes and what the waves beyond them yield, against the same closed forms.
     #[test]
-    fn modes_and_the_waves_beyond_them_yield_as_all_modes() {
+    fn modes_and_the_waves_beyond_them_have_the_compliance_of_all_modes() {
         let plate = plate(Edge::Clamped);
         let unit = plate.radius.powi(2)
             / (16.0 * PI * rigidity(plate.material.youngs_modulus, 0.3, plate.thickness));

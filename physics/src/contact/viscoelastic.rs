@@ -94,7 +94,7 @@ impl ViscoelasticContact {
     }
 
     /// Approach in m up to which no spring pushes at the end of the step.
-    pub fn touch(&self) -> f64 {
+    pub fn contact_approach(&self) -> f64 {
         let of = |(k, free): (usize, &f64)| free - self.pressed(k, 0.0);
         let first = self.free.iter().enumerate().map(of).fold(f64::INFINITY, f64::min);
         first.min(-self.pressed(self.springs.len(), 0.0))
@@ -217,9 +217,12 @@ mod tests {
         let stored = contact.taken();
         assert!(-work > 0.3 * stored && -work < 0.9 * stored, "{work} {stored}");
         assert_relative_eq!(pressed.taken(), stored + work, max_relative = 5e-3);
-        let touch = contact.touch();
-        assert!(touch > 0.02 * approach(end) && touch < approach(end), "{touch}");
-        assert_eq!(contact.force(touch)[0], 0.0);
-        assert!(contact.force(touch * (1.0 + 1e-9))[0] > 0.0);
+        let contact_approach = contact.contact_approach();
+        assert!(
+            contact_approach > 0.02 * approach(end) && contact_approach < approach(end),
+            "{contact_approach}"
+        );
+        assert_eq!(contact.force(contact_approach)[0], 0.0);
+        assert!(contact.force(contact_approach * (1.0 + 1e-9))[0] > 0.0);
     }
 }

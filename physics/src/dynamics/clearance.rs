@@ -18,7 +18,7 @@ static MIDDLES: LazyLock<[[f64; POINTS - 1]; POINTS]> = LazyLock::new(|| {
 
 /// A touch between the points of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct StepTouch {
+pub(super) struct StepContact {
     /// Where in the step (0..1) it begins.
     pub(super) place: f64,
     /// Its depth in m.
@@ -28,7 +28,7 @@ pub(super) struct StepTouch {
 /// The touch, if any, of a contact whose approaches at start, Gauss points and end of a step are `approach` in m, none of
 /// them positive but, by a rounding error, that at the start.
 #[inline]
-pub(super) fn touch_between(collocation: &Collocation, approach: &Points) -> Option<StepTouch> {
+pub(super) fn contact_between(collocation: &Collocation, approach: &Points) -> Option<StepContact> {
     let mut middles = [0.0; POINTS - 1];
     for (weights, value) in MIDDLES.iter().zip(approach) {
         for (middle, weight) in middles.iter_mut().zip(weights) {
@@ -43,7 +43,7 @@ pub(super) fn touch_between(collocation: &Collocation, approach: &Points) -> Opt
     let [low, high] = [before, before + 1].map(|p| collocation.points[p]);
     let polynomial = collocation.through(approach);
     let place = crossing(&polynomial, [low, 0.5 * (low + high)], [approach[before], middles[before]]);
-    Some(StepTouch { place, depth })
+    Some(StepContact { place, depth })
 }
 
 #[cfg(test)]
@@ -53,19 +53,19 @@ mod tests {
 
     /// A parabola that is positive on 0.4..0.6, between the second and the third Gauss point.
     #[test]
-    fn a_touch_between_two_points_is_found_with_place_and_depth() {
+    fn a_contact_between_two_points_is_found_with_place_and_depth() {
         let collocation = Collocation::default();
         let approach = collocation.points.map(|u| 0.01 - (u - 0.5_f64).powi(2));
-        let touch = touch_between(&collocation, &approach).unwrap();
-        assert_relative_eq!(touch.place, 0.4, epsilon = 1e-9);
-        assert_relative_eq!(touch.depth, 0.01, epsilon = 1e-12);
+        let contact = contact_between(&collocation, &approach).unwrap();
+        assert_relative_eq!(contact.place, 0.4, epsilon = 1e-9);
+        assert_relative_eq!(contact.depth, 0.01, epsilon = 1e-12);
     }
 
     #[test]
-    fn a_contact_that_stays_open_has_no_touch() {
+    fn a_gap_that_stays_open_has_no_contact() {
         let collocation = Collocation::default();
         for open in [|u: f64| -u, |u: f64| u - 1.0, |u: f64| -1e-3 - (u - 0.5).powi(2)] {
-            assert_eq!(touch_between(&collocation, &collocation.points.map(open)), None);
+            assert_eq!(contact_between(&collocation, &collocation.points.map(open)), None);
         }
     }
 }

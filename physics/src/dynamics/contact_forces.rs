@@ -5,9 +5,9 @@
 //! residual flexibility every visit of a point does one Newton step of the contacts' own small system, from
 //! the Hertz approaches of the visit before.
 
-use super::bank::Bank;
+use super::batch::OscillatorBatch;
 use super::collocation::{Collocation, POINTS, Points};
-use super::contact_ledger::work;
+use super::contact_balance::work;
 use super::point_laws::{HertzPoints, PointLaw, ResidualPoints, Visit};
 use super::step_table::StepTable;
 use super::system::{System, dot};
@@ -70,7 +70,7 @@ pub struct ForceError {
 pub struct StepSolver<'a> {
     pub system: &'a System,
     pub collocation: &'a Collocation,
-    pub bank: Bank,
+    pub batch: OscillatorBatch,
     /// Factor by which a sweep reduced the change of the forces lately.
     contraction: f64,
     /// The latest extrapolation: ratio of the steps, weights of the points of the step before at each Gauss point.
@@ -90,7 +90,7 @@ impl<'a> StepSolver<'a> {
         Self {
             system,
             collocation,
-            bank: Bank::new(system),
+            batch: OscillatorBatch::new(system),
             contraction: 1.0,
             extrapolation: (0.0, [f64x4::ZERO; POINTS]),
         }
@@ -106,7 +106,7 @@ impl<'a> StepSolver<'a> {
         next: (&mut [f64x4], &mut [f64x4]),
         force_error: ForceError,
     ) -> Option<Course> {
-        let free = table.free_approach(&self.bank, self.system.gap, now.0, now.1);
+        let free = table.free_approach(&self.batch, self.system.gap, now.0, now.1);
         let unforced = free.map(f64x4::to_array);
         let guess = self.guess(before, table.h).unwrap_or(unforced);
         let laws = &self.system.laws;
@@ -120,7 +120,7 @@ impl<'a> StepSolver<'a> {
         };
         let (unknowns, contraction) = solved?;
         self.contraction = contraction;
-        let (end, motion) = table.advance(&self.bank, &unknowns.force, now, next);
+        let (end, motion) = table.advance(&self.batch, &unknowns.force, now, next);
         let end_approach = [end[0] - self.system.gap[0], end[1] - self.system.gap[1]];
         let last = unknowns.local.map(|p| dot(&self.collocation.ends[1], &p));
         let (end_local, end_force) = self

@@ -59,8 +59,8 @@ pub enum StopReason {
 }
 
 impl StopReason {
-    /// Of a run that ends with `touching` bodies.
-    pub(crate) fn of(touching: bool) -> Self {
-        if touching { Self::Cut } else { Self::Parted }
+    /// Of a run that ends with `in_contact` bodies.
+    pub(crate) fn of(in_contact: bool) -> Self {
+        if in_contact { Self::Cut } else { Self::Parted }
     }
 }

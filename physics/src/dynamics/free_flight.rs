@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Flight {
     /// A contact touches after this time in s.
-    Touch(f64),
+    Contact(f64),
     /// No contact can touch any more.
     Over,
 }
@@ -27,7 +27,7 @@ const RENEWAL: usize = 500;
 ///
 /// # Errors
 /// [`Error::Solver`] if the bodies neither touch nor recede within [`MAX_EVALUATIONS`] evaluations.
-pub fn next_touch(system: &System, q: &[f64], v: &[f64], limit: f64) -> Result<Flight> {
+pub fn next_contact(system: &System, q: &[f64], v: &[f64], limit: f64) -> Result<Flight> {
     // a run whose end is given is about the bender's later strikes too
     let endless = limit.is_infinite() && system.outer_returns();
     if endless && inner_is_out_of_reach(system, &GapBounds::new(system, 1, q, v), q, v) {
@@ -36,9 +36,9 @@ pub fn next_touch(system: &System, q: &[f64], v: &[f64], limit: f64) -> Result<F
     let (mut q, mut v, mut start) = (q.to_vec(), v.to_vec(), 0.0);
     for _ in 0..MAX_EVALUATIONS / RENEWAL {
         match search(system, &q, &v, limit - start) {
-            TouchSearch::Found(Flight::Touch(time)) => return Ok(Flight::Touch(start + time)),
-            TouchSearch::Found(Flight::Over) => return Ok(Flight::Over),
-            TouchSearch::NotYet(time) => {
+            ContactSearch::Found(Flight::Contact(time)) => return Ok(Flight::Contact(start + time)),
+            ContactSearch::Found(Flight::Over) => return Ok(Flight::Over),
+            ContactSearch::NotYet(time) => {
                 advance(system, time, &mut q, &mut v);
                 start += time;
             }
@@ -50,14 +50,14 @@ pub fn next_touch(system: &System, q: &[f64], v: &[f64], limit: f64) -> Result<F
 }
 
 /// What a search came to.
-enum TouchSearch {
+enum ContactSearch {
     Found(Flight),
     /// No touch up to this time in s.
     NotYet(f64),
 }
 
 /// Looks for a touch within `limit` s by [`RENEWAL`] evaluations.
-fn search(system: &System, q: &[f64], v: &[f64], limit: f64) -> TouchSearch {
+fn search(system: &System, q: &[f64], v: &[f64], limit: f64) -> ContactSearch {
     let bounds = [GapBounds::new(system, 0, q, v), GapBounds::new(system, 1, q, v)];
     let mut time = 0.0;
     for _ in 0..RENEWAL {
@@ -67,21 +67,21 @@ fn search(system: &System, q: &[f64], v: &[f64], limit: f64) -> TouchSearch {
             let (gap, rate) = bound.gap(system, q, v, time);
             let scale = bound.elastic.max(bound.rigid_gap.abs());
             if gap <= 1e-14 * scale && rate < 0.0 {
-                return TouchSearch::Found(Flight::Touch(time));
+                return ContactSearch::Found(Flight::Contact(time));
             }
             let safe = bound.safe_step(gap.max(0.0), rate).max(bound.out_of_reach(time));
             step = step.min(safe).min(horizon.max(1e-3 * bound.shortest_period));
         }
         if step.is_infinite() || time > limit {
-            return TouchSearch::Found(Flight::Over);
+            return ContactSearch::Found(Flight::Over);
         }
         // a step of round-off size: the touch is here
         if time + step == time {
-            return TouchSearch::Found(Flight::Touch(time));
+            return ContactSearch::Found(Flight::Contact(time));
         }
         time += step;
     }
-    TouchSearch::NotYet(time)
+    ContactSearch::NotYet(time)
 }
 
 /// Whether no contact can touch any more in free flight from the state (`q`, `v`), both contacts open.

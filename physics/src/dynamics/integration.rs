@@ -1,7 +1,7 @@
 //! What an integration is asked for and what it comes to: its results, and what the balances of energy and momentum leave
 //! unexplained.
 
-use super::contact_ledger::ContactLedger;
+use super::contact_balance::ContactBalance;
 use super::driver::StopReason;
 use super::free_flight;
 use super::system::{PLATE, System};
@@ -24,7 +24,7 @@ pub struct Options {
     /// Relative error of the force peaks from looking for them within the steps; 0 = as exact as rounding permits.
     pub peak_error: f64,
     /// Relative error of force peaks and times of separation, with right numbers of contacts, for which the impact is solved again where
-    /// necessary ([`crate::dynamics::assured`]); `None` where ten tolerances of velocities and force peaks are enough.
+    /// necessary ([`crate::dynamics::error_control`]); `None` where ten tolerances of velocities and force peaks are enough.
     pub results: Option<f64>,
     /// Whether the heat in the drive of a stack is summed up, for its ledger of energy.
     pub heat: bool,
@@ -70,7 +70,7 @@ pub struct Integration {
     /// Velocities of outer and inner body at the end in m/s, signed along z.
     pub velocity: [f64; 2],
     /// Accounts of both contacts.
-    pub contacts: [ContactLedger; 2],
+    pub contacts: [ContactBalance; 2],
     /// Energy that no strain energy, motion or damping accounts for, over the initial energy.
     pub energy_residual: f64,
     /// The same with its sign: positive where energy came out of nothing.
@@ -82,12 +82,12 @@ pub struct Integration {
     /// Accepted steps.
     pub steps: u64,
     /// Estimated error of the velocities from the time integration, over the impact speed, if it was looked for
-    /// ([`crate::dynamics::assured`]).
+    /// ([`crate::dynamics::error_control`]).
     pub error_estimate: Option<f64>,
     /// With which steps it was found; `None` of a single run.
     pub converged: Option<Converged>,
     /// Tolerance that the integration keeps whatever smaller one is asked for; 0 where it keeps any.
-    pub kept_tolerance: f64,
+    pub least_tolerance: f64,
     /// What a stack took and gave, if the outer body is one.
     pub supplied: Option<Supplied>,
     /// Why the run ended.
@@ -140,7 +140,7 @@ pub(super) struct Closing<'a> {
     pub(super) v: &'a [f64],
     /// Energy that the contacts store, J.
     pub(super) stored: f64,
-    pub(super) contacts: [ContactLedger; 2],
+    pub(super) contacts: [ContactBalance; 2],
     pub(super) fluid: FluidAccount,
     pub(super) steps: u64,
     /// Heat in the drive of a stack in J, if it was summed up.
@@ -193,7 +193,7 @@ impl Closing<'_> {
             steps: self.steps,
             error_estimate: None,
             converged: None,
-            kept_tolerance: 0.0,
+            least_tolerance: 0.0,
             supplied,
             stop: if pressed {
                 StopReason::Pressed
@@ -221,7 +221,7 @@ impl Closing<'_> {
 pub(super) fn unexplained_momentum(
     system: &System,
     v: &[f64],
-    [outer, inner]: &[ContactLedger; 2],
+    [outer, inner]: &[ContactBalance; 2],
     fluid: &FluidAccount,
 ) -> f64 {
     let velocity = system.of_bodies(v);

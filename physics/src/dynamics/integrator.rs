@@ -3,18 +3,18 @@
 mod judged;
 
 use self::judged::StepVerdict;
-use super::bank::in_blocks;
+use super::batch::in_blocks;
 use super::collocation::{Collocation, POINTS};
+use super::contact_balance::{ContactBalance, StepCourse};
 use super::contact_forces::{Course, ForceError, StepSolver};
-use super::contact_ledger::{ContactLedger, StepCourse};
 use super::driver::{self, Stepper};
 use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
 use super::heating;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
-use super::ladder::Ladder;
 use super::recorder::Recorder;
 use super::step_bounds::{AdaptedLength, EnergyAccount, StepBounds, base_step, force_scale, momentum_scale};
+use super::step_tables::StepTables;
 use super::system::{System, dot};
 use crate::error::{Error, Result};
 use crate::numerics::stages::{STAGES, Stages};
@@ -27,7 +27,7 @@ const RATTLING: u32 = 1000;
 /// stiff contact, quicker than any of its modes, does so for too long.
 const TURN_PER_STEP: f64 = 0.1;
 /// Share of a force's admissible defect at which the sweeps may end.
-const SETTLED: f64 = 0.1;
+const CONVERGED: f64 = 0.1;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
 
@@ -51,7 +51,7 @@ struct DryStepper<'a> {
     end_time: f64,
     bounds: StepBounds,
     length: AdaptedLength,
-    tables: Ladder,
+    tables: StepTables,
     time: f64,
     q: Vec<f64x4>,
     v: Vec<f64x4>,
@@ -60,7 +60,7 @@ struct DryStepper<'a> {
     /// The latest step.
     course: Course,
     energy: EnergyAccount,
-    contacts: [ContactLedger; 2],
+    contacts: [ContactBalance; 2],
     steps: u64,
     /// See [`Options`].
     peak_error: f64,
@@ -90,7 +90,7 @@ impl<'a> DryStepper<'a> {
             length: AdaptedLength::new(base_step(hit.duration(), options.tolerance), START_LEVEL),
             energy: EnergyAccount::new(&hit, system.kinetic_energy(), options.tolerance),
             bounds: StepBounds::new(options.tolerance),
-            tables: Ladder::new(q.len()),
+            tables: StepTables::new(q.len()),
             time: 0.0,
             next_q: q.clone(),
             next_v: v.clone(),
@@ -101,7 +101,7 @@ impl<'a> DryStepper<'a> {
             solver: StepSolver::new(system, collocation),
             q,
             v,
-            contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
+            contacts: [ContactBalance::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
             steps: 0,
             peak_error: options.peak_error,
             heat: options.heat.then_some(0.0),
@@ -121,8 +121,8 @@ impl<'a> DryStepper<'a> {
     fn fly(&mut self) -> Result<bool> {
         let system = self.solver.system;
         let (q, v) = (flat(&self.q), flat(&self.v));
-        let (flight, more) = match free_flight::next_touch(system, q, v, self.end_time - self.time)? {
-            Flight::Touch(duration) if self.time + duration < self.end_time => (duration, true),
+        let (flight, more) = match free_flight::next_contact(system, q, v, self.end_time - self.time)? {
+            Flight::Contact(duration) if self.time + duration < self.end_time => (duration, true),
             Flight::Over if self.end_time.is_infinite() => return Ok(false),
             _ => (self.end_time - self.time, false),
         };
@@ -130,7 +130,7 @@ impl<'a> DryStepper<'a> {
             let n = system.size();
             recorder.step(self.time, flight, &q[..n], &v[..n], &[[0.0; STAGES]; 2])?;
         }
-        self.book_heat(flight, &[0.0; STAGES]);
+        self.add_heat(flight, &[0.0; STAGES]);
         free_flight::advance(
             self.solver.system,
             flight,
@@ -138,12 +138,12 @@ impl<'a> DryStepper<'a> {
             bytemuck::cast_slice_mut(&mut self.v),
         );
         self.time += flight;
-        let (bank, v) = (&self.solver.bank, &self.v);
+        let (batch, v) = (&self.solver.batch, &self.v);
         let approach = self.solver.system.modal_approach(flat(&self.q));
-        let rates = bank.approach_rate(v);
+        let rates = batch.approach_rate(v);
         for ((contact, approach), rate) in self.contacts.iter_mut().zip(approach).zip(rates) {
             // a parabola that comes back to zero at this rate was a quarter of it times its duration deep
-            contact.book_flight((0.25 * rate * flight).max(-approach));
+            contact.add_flight((0.25 * rate * flight).max(-approach));
         }
         // exact flight keeps the energy of undamped bodies; of others it is not asked for
         self.course = at_rest(approach, self.course.motion);
@@ -154,7 +154,7 @@ impl<'a> DryStepper<'a> {
     /// Takes one step, as long as the tolerance permits.
     fn step(&mut self) -> Result<()> {
         // the end of a step that an event asked for
-        let mut wanted = None;
+        let mut shortened = None;
         let mut solved = true;
         loop {
             if self.length.is_exhausted() {
@@ -163,15 +163,15 @@ impl<'a> DryStepper<'a> {
             self.length.limit();
             let h = self.length.length();
             let rest = self.end_time - self.time;
-            let shorter = wanted.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
-            let (bank, collocation, system) =
-                (&self.solver.bank, self.solver.collocation, self.solver.system);
+            let shorter = shortened.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
+            let (batch, collocation, system) =
+                (&self.solver.batch, self.solver.collocation, self.solver.system);
             let scale = momentum_scale(system, &self.contacts);
             let least = self.least_forces(scale);
             let share = StepBounds::share(self.steps);
             let table = match shorter {
-                Some(h) => self.tables.other(bank, collocation, h),
-                None => self.tables.get(bank, collocation, self.length.level(), h),
+                Some(h) => self.tables.other(batch, collocation, h),
+                None => self.tables.get(batch, collocation, self.length.level(), h),
             };
             let h = table.h;
             let trial = self.solver.solve(
@@ -181,7 +181,7 @@ impl<'a> DryStepper<'a> {
                 (&mut self.next_q, &mut self.next_v),
                 ForceError {
                     absolute: least.map(|least| {
-                        let peak = SETTLED * share * self.bounds.force_defect * least;
+                        let peak = CONVERGED * share * self.bounds.force_defect * least;
                         peak.min(self.bounds.impulse * scale[1] / h)
                     }),
                     relative: self.bounds.force,
@@ -189,7 +189,7 @@ impl<'a> DryStepper<'a> {
             );
             solved = trial.is_some();
             let Some(trial) = trial else {
-                wanted = None;
+                shortened = None;
                 self.length.halve();
                 continue;
             };
@@ -198,16 +198,16 @@ impl<'a> DryStepper<'a> {
                 self.judge(&trial, scale, self.energy.excess(energy_error, h, 0.0));
             if excess > 1.0 {
                 match event {
-                    Some(u) if wanted.is_none() => wanted = Some(u * h),
+                    Some(u) if shortened.is_none() => shortened = Some(u * h),
                     _ => {
-                        wanted = None;
+                        shortened = None;
                         self.length.shorten(excess);
                     }
                 }
                 continue;
             }
             for (contact, defect) in self.contacts.iter_mut().zip(force_defect) {
-                contact.book_defect(defect);
+                contact.add_defect(defect);
             }
             self.energy.book(energy_error);
             self.accept(trial)?;
@@ -274,8 +274,8 @@ impl<'a> DryStepper<'a> {
             };
             contact.book(self.solver.collocation, &course);
         }
-        self.book_peaks(&trial);
-        self.book_heat(trial.h, &trial.stages()[0]);
+        self.add_peaks(&trial);
+        self.add_heat(trial.h, &trial.stages()[0]);
         std::mem::swap(&mut self.q, &mut self.next_q);
         std::mem::swap(&mut self.v, &mut self.next_v);
         self.time += trial.h;
@@ -285,7 +285,7 @@ impl<'a> DryStepper<'a> {
     }
 
     /// Books the heat of the next `h` s under the outer contact's `force` in N, if that is asked for.
-    fn book_heat(&mut self, h: f64, force: &Stages) {
+    fn add_heat(&mut self, h: f64, force: &Stages) {
         if let Some(heat) = &mut self.heat {
             let StepSolver { system, collocation, .. } = &self.solver;
             *heat += heating::heat(system, collocation, h, [flat(&self.q), flat(&self.v)], force);
@@ -293,12 +293,12 @@ impl<'a> DryStepper<'a> {
     }
 
     /// Books the largest forces of the step from the present state to the next.
-    fn book_peaks(&mut self, trial: &Course) {
-        let StepSolver { system, collocation, bank, .. } = &self.solver;
+    fn add_peaks(&mut self, trial: &Course) {
+        let StepSolver { system, collocation, batch, .. } = &self.solver;
         let h = trial.h;
         let motion = |place: f64| {
             let forces = trial.stages().map(|stages| collocation.derivatives(&stages, h));
-            let [approach, rate, acceleration] = bank.approach_after((&self.q, &self.v), &forces, place * h);
+            let [approach, rate, acceleration] = batch.approach_after((&self.q, &self.v), &forces, place * h);
             [
                 [approach[0] - system.gap[0], approach[1] - system.gap[1]],
                 rate.map(|rate| rate * h),
@@ -318,7 +318,7 @@ impl<'a> DryStepper<'a> {
             contact.force_peak = step.peak(i, contact.force_peak, |end| {
                 let v = if end == 0 { &self.v } else { &self.next_v };
                 let local = trial.local_approach.map(|values| values[end * (POINTS - 1)]);
-                system.force_rate(local, bank.approach_rate(v))[i] > 0.0
+                system.force_rate(local, batch.approach_rate(v))[i] > 0.0
             });
         }
     }
@@ -367,15 +367,15 @@ impl Stepper for DryStepper<'_> {
 
     /// Whether the integration or the impact itself is to blame.
     fn endless(&self) -> Error {
-        let touches: u32 = self.contacts.iter().map(|contact| contact.contacts).sum();
+        let contacts: u32 = self.contacts.iter().map(|contact| contact.contacts).sum();
         let vibration = self.quickest_vibration();
         let turned = vibration * self.time;
         let sentence = format!(
-            "reduced model: no end after {} steps, {touches} contacts and {turned:.1e} rad of a vibration of {vibration:.1e} rad/s between the contacts, at t = {:.6e} s; set `run.end_time`, or take fewer modes",
+            "reduced model: no end after {} steps, {contacts} contacts and {turned:.1e} rad of a vibration of {vibration:.1e} rad/s between the contacts, at t = {:.6e} s; set `run.end_time`, or take fewer modes",
             Self::MOST_STEPS,
             self.time
         );
-        if touches > RATTLING || turned > TURN_PER_STEP * self.steps as f64 {
+        if contacts > RATTLING || turned > TURN_PER_STEP * self.steps as f64 {
             Error::BeyondModel(sentence)
         } else {
             Error::Solver(sentence)

@@ -1,34 +1,34 @@
 //! The motion: bodies as oscillators, coupled by contacts and fluid, from the first touch to the last release.
 
-pub mod assured;
-mod bank;
+mod balance_check;
+mod batch;
 mod centre;
 mod clearance;
 pub mod collocation;
+pub mod contact_balance;
 mod contact_forces;
-pub mod contact_ledger;
 pub(crate) mod driver;
 pub mod equations;
+pub mod error_control;
 mod force_peak;
 mod free_flight;
 mod heating;
+pub(crate) mod impulse_splitting;
 pub mod integration;
 pub mod integrator;
-pub(crate) mod kicks;
-mod ladder;
-mod ledger_check;
 pub mod memory;
 mod moving_body;
 mod point_laws;
 pub(crate) mod recorder;
 mod step_bounds;
 mod step_table;
+mod step_tables;
 pub mod system;
 pub mod wet;
 
-pub use contact_ledger::ContactLedger;
+pub use balance_check::balance_check;
+pub use contact_balance::ContactBalance;
 pub use driver::StopReason;
-pub use ledger_check::ledger_check;
 pub use moving_body::MovingBody;
 
 use crate::error::Result;

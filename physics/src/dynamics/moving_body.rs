@@ -55,7 +55,7 @@ impl MovingBody {
 
     /// Both as rigid bodies; a bender is none.
     pub fn both_rigid(outer: &Outer, inner: &Inner) -> [Self; 2] {
-        debug_assert!(!outer.shape.is_held(), "a bender or a stack is no rigid body");
+        debug_assert!(!outer.shape.is_mounted(), "a bender or a stack is no rigid body");
         [Self::rigid_outer(outer), Self::inner(inner)]
     }
 
@@ -147,13 +147,13 @@ impl MovingBody {
             }
         };
         if stack.gap > 0.0 {
-            body.fly_to_the_touch(stack)?;
+            body.fly_to_contact(stack)?;
         }
         Ok(body)
     }
 
     /// Moves on, freely, until the tip touches the plate.
-    fn fly_to_the_touch(&mut self, stack: &Stack) -> Result<()> {
+    fn fly_to_contact(&mut self, stack: &Stack) -> Result<()> {
         // |x''| of the tip is bounded by the modes' amplitudes
         let bound: f64 = (0..self.tip.len())
             .map(|k| {

@@ -1,6 +1,6 @@
 //! What a step may be wrong by for the tolerance asked for.
 
-use super::contact_ledger::ContactLedger;
+use super::contact_balance::ContactBalance;
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
 use crate::numerics::stages::STAGES;
@@ -179,7 +179,7 @@ impl EnergyAccount {
 
 /// Momenta in N s in relation to which the impulses of both contacts have to be right.
 #[inline]
-pub(super) fn momentum_scale(system: &System, contacts: &[ContactLedger; 2]) -> [f64; 2] {
+pub(super) fn momentum_scale(system: &System, contacts: &[ContactBalance; 2]) -> [f64; 2] {
     let initial = system.masses[0] * system.speed;
     let light = initial.min(system.masses[1] * system.speed);
     // a light inner body feels an error that the heavy outer one would not

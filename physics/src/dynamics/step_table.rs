@@ -1,6 +1,6 @@
 //! What the oscillators of a bank answer in a step of one length.
 
-use super::bank::{Bank, Block};
+use super::batch::{Block, OscillatorBatch};
 use super::collocation::Collocation;
 use super::system::dot;
 use crate::numerics::duhamel::MOMENTS;
@@ -36,9 +36,9 @@ impl StepTable {
         }
     }
 
-    /// Makes these the tables of `bank` for steps of length `h` s.
-    pub fn fill(&mut self, bank: &Bank, collocation: &Collocation, h: f64) {
-        let n = bank.blocks.len();
+    /// Makes these the tables of `batch` for steps of length `h` s.
+    pub fn fill(&mut self, batch: &OscillatorBatch, collocation: &Collocation, h: f64) {
+        let n = batch.blocks.len();
         self.h = h;
         let mut scale = 1.0;
         for p in 0..STAGES {
@@ -54,7 +54,7 @@ impl StepTable {
             let (slope, impulse) = self.oscillators[2 * j * n..][..2 * n].split_at_mut(n);
             // answers of the approaches to forces tau^p / p!
             let mut answers = [[f64x4::ZERO; STAGES]; 3];
-            for (k, block) in bank.blocks.iter().enumerate() {
+            for (k, block) in batch.blocks.iter().enumerate() {
                 let moments = block.moments(t, &powers);
                 (slope[k], impulse[k]) = (moments[0], moments[1]);
                 for p in 0..STAGES {
@@ -64,7 +64,7 @@ impl StepTable {
                 }
             }
             let mut answers = answers.map(|answers| answers.map(f64x4::reduce_add));
-            for fed in &bank.fed {
+            for fed in &batch.fed {
                 let [displacement, _] = fed.answers(t);
                 for p in 0..STAGES {
                     answers[0][p] += fed.approach * displacement[p];
@@ -80,20 +80,26 @@ impl StepTable {
         }
         self.coupling = rows.map(|columns| columns.map(f64x4::from));
         let powers = powers(h);
-        for (k, block) in bank.blocks.iter().enumerate() {
+        for (k, block) in batch.blocks.iter().enumerate() {
             for (p, moment) in block.moments(h, &powers).into_iter().enumerate() {
                 self.oscillators[(2 * STAGES + p) * n + k] = moment;
             }
         }
         self.fed.clear();
-        self.fed.extend(bank.fed.iter().map(|fed| fed.answers(h)));
+        self.fed.extend(batch.fed.iter().map(|fed| fed.answers(h)));
     }
 
     /// Approaches at the Gauss points, in m, if no force acted during the step; `gap` in m.
     #[inline]
-    pub fn free_approach(&self, bank: &Bank, gap: [f64; 2], q: &[f64x4], v: &[f64x4]) -> [f64x4; 2] {
+    pub fn free_approach(
+        &self,
+        batch: &OscillatorBatch,
+        gap: [f64; 2],
+        q: &[f64x4],
+        v: &[f64x4],
+    ) -> [f64x4; 2] {
         let n = q.len();
-        let (blocks, v) = (&bank.blocks[..n], &v[..n]);
+        let (blocks, v) = (&batch.blocks[..n], &v[..n]);
         let rows: [&[f64x4]; 2 * STAGES] = std::array::from_fn(|row| &self.oscillators[row * n..][..n]);
         let mut sums = [[f64x4::ZERO; STAGES]; 2];
         for k in 0..n {
@@ -112,14 +118,14 @@ impl StepTable {
     #[inline]
     pub fn advance(
         &self,
-        bank: &Bank,
+        batch: &OscillatorBatch,
         forces: &[Stages; 2],
         (q, v): (&[f64x4], &[f64x4]),
         (q_end, v_end): (&mut [f64x4], &mut [f64x4]),
     ) -> ([f64; 2], f64) {
         let n = q.len();
         let (v, q_end, v_end) = (&v[..n], &mut q_end[..n], &mut v_end[..n]);
-        let blocks = &bank.blocks[..n];
+        let blocks = &batch.blocks[..n];
         let rows: [&[f64x4]; MOMENTS] =
             std::array::from_fn(|p| &self.oscillators[(2 * STAGES + p) * n..][..n]);
         let mut polynomial = [[0.0; STAGES]; 2];
@@ -146,7 +152,7 @@ impl StepTable {
             energy += rate * rate + stiffness * (displacement * displacement);
         }
         let mut sums = sums.map(f64x4::reduce_add);
-        for (fed, answers) in bank.fed.iter().zip(&self.fed) {
+        for (fed, answers) in batch.fed.iter().zip(&self.fed) {
             let [displacement, rate] = answers.map(|answers| dot(&answers, &polynomial[0]));
             bytemuck::cast_slice_mut::<_, f64>(q_end)[fed.place] -= displacement;
             bytemuck::cast_slice_mut::<_, f64>(v_end)[fed.place] -= rate;

@@ -293,7 +293,7 @@ impl System {
             None => self.energy(q, v),
             Some(circuit) => {
                 let available = circuit.account(&self.of_outer(q), &self.of_outer(v)).available;
-                available + self.energy_beside_outer(q, v)
+                available + self.energy_without_outer(q, v)
             }
         }
     }
@@ -308,11 +308,11 @@ impl System {
             speed += (mode.tip * own_v[k]).abs();
             (own_q[k], own_v[k]) = (0.0, 0.0);
         }
-        Some((circuit.account(&own_q, &own_v).available + self.energy_beside_outer(q, v), speed))
+        Some((circuit.account(&own_q, &own_v).available + self.energy_without_outer(q, v), speed))
     }
 
     /// Kinetic and strain energy of all but the outer body in J.
-    fn energy_beside_outer(&self, q: &[f64], v: &[f64]) -> f64 {
+    fn energy_without_outer(&self, q: &[f64], v: &[f64]) -> f64 {
         let of = |k: usize| 0.5 * (v[k] * v[k] + (self.oscillators[k].omega * q[k]).powi(2));
         (0..self.size()).filter(|k| self.bodies[0][*k] == 0.0).map(of).sum()
     }
@@ -329,7 +329,7 @@ impl System {
             Some(circuit) => circuit.account(&own_q, &own_v),
             None => self.stack.as_ref()?.account(&own_q, &own_v),
         };
-        Some((account, self.energy_beside_outer(q, v)))
+        Some((account, self.energy_without_outer(q, v)))
     }
 
     /// Strain energy of contacts and residual flexibility in J under the forces `f` in N with the patches `p` in m that go

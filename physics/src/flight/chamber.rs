@@ -128,7 +128,7 @@ impl Chamber {
     }
 
     /// Whether a launch at `angle` rad against z from the seat goes straight into a wall that the sphere touches there.
-    pub(super) fn is_beside_wall(&self, angle: f64) -> bool {
+    pub(super) fn is_next_to_wall(&self, angle: f64) -> bool {
         let along = Vector::new(angle.sin(), angle.cos());
         (0..self.walls()).filter(|wall| self.gap(*wall, self.seats[0]) < 1e-6 * self.radius).any(|wall| {
             let arm = self.seats[0] - self.nearest(wall, self.seats[0]).point;

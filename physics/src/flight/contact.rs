@@ -10,7 +10,7 @@ use crate::numerics::root::root;
 /// Speed in m/s below which a slip is none.
 const NO_SPEED: f64 = 1e-11;
 /// Penetration in m below which another wall counts as not touched.
-const TOUCHED: f64 = 1e-13;
+const CONTACT_GAP: f64 = 1e-13;
 
 /// How far ahead of a step, over its length, it is asked what sticks.
 const SOON: f64 = 1e-6;
@@ -23,7 +23,7 @@ pub(super) enum Change {
     /// The sphere lifts off.
     Leaves,
     /// Another wall is touched.
-    Touches(usize),
+    Meets(usize),
     /// The surface goes on with this.
     Passes(ChamberFeature),
     /// The sphere rests, and nothing will move it.
@@ -102,7 +102,7 @@ impl Setup {
             Condition::Pressed => (state, Change::Leaves),
             Condition::Begin => (state, Change::Passes(track.next(&self.chamber, true))),
             Condition::End => (state, Change::Passes(track.next(&self.chamber, false))),
-            Condition::Clear(wall) => (state, Change::Touches(wall)),
+            Condition::Clear(wall) => (state, Change::Meets(wall)),
             Condition::Surface | Condition::Turn => (rolling.switched(state, condition), Change::Goes),
         }
     }
@@ -141,7 +141,7 @@ impl Rolling<'_> {
             Condition::Pressed => self.setup.loads(self.track, time, course).0,
             Condition::Begin => q,
             Condition::End => self.track.length - q,
-            Condition::Clear(wall) => self.setup.chamber.gap(wall, self.track.place(q)) + TOUCHED,
+            Condition::Clear(wall) => self.setup.chamber.gap(wall, self.track.place(q)) + CONTACT_GAP,
             Condition::Surface => match self.regime.surface {
                 Bond::Slip(sign) => f64::from(sign) * (v + self.setup.radius * spin),
                 Bond::Stick => {

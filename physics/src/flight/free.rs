@@ -8,7 +8,7 @@ use crate::numerics::root::root;
 const WAY: f64 = 0.1;
 /// Gap in m below which a wall counts as touched already, and depth at which it is touched again.
 const CLOSED: f64 = 1e-12;
-const TOUCHED: f64 = 1e-13;
+const CONTACT_GAP: f64 = 1e-13;
 
 /// Most halvings of a step at the end of a wall.
 const HALVINGS: u32 = 4;
@@ -50,7 +50,9 @@ impl Setup {
         let mut first: Option<(f64, usize)> = None;
         for wall in 0..self.chamber.walls() {
             let within = first.map_or(h, |(earlier, _)| earlier);
-            if let Some(time) = self.touch(wall, [from, &to], h, HALVINGS).filter(|time| *time < within) {
+            if let Some(time) =
+                self.contact_time(wall, [from, &to], h, HALVINGS).filter(|time| *time < within)
+            {
                 first = Some((time, wall));
             }
         }
@@ -59,7 +61,7 @@ impl Setup {
 
     /// Time in s at which the sphere touches `wall` in a step of `h` s. A step in which the wall's edge comes nearest, or no longer is,
     /// is halved so many times: up and down again may be followed by a way around the edge.
-    fn touch(&self, wall: usize, [from, to]: [&State; 2], h: f64, halvings: u32) -> Option<f64> {
+    fn contact_time(&self, wall: usize, [from, to]: [&State; 2], h: f64, halvings: u32) -> Option<f64> {
         let nearest = [from, to].map(|state| self.chamber.nearest(wall, state.place));
         let gaps = [0, 1].map(|k| ([from, to][k].place - nearest[k].point).norm() - self.radius);
         let way = (from.velocity.norm() + to.velocity.norm()) * h;
@@ -68,8 +70,8 @@ impl Setup {
         }
         if halvings > 0 && nearest[0].feature != nearest[1].feature {
             let middle = self.flown(from, 0.5 * h);
-            let first = self.touch(wall, [from, &middle], 0.5 * h, halvings - 1);
-            let second = || Some(0.5 * h + self.touch(wall, [&middle, to], 0.5 * h, halvings - 1)?);
+            let first = self.contact_time(wall, [from, &middle], 0.5 * h, halvings - 1);
+            let second = || Some(0.5 * h + self.contact_time(wall, [&middle, to], 0.5 * h, halvings - 1)?);
             return first.or_else(second);
         }
         let gap = |t: f64| self.chamber.gap(wall, self.flown(from, t).place);
@@ -83,7 +85,7 @@ impl Setup {
             let lowest = gap(nearest);
             return (lowest < 0.0).then(|| root(gap, [0.0, nearest], [gaps[0], lowest]));
         }
-        if gaps[1] >= -TOUCHED {
+        if gaps[1] >= -CONTACT_GAP {
             return None;
         }
         if rates[0] > 0.0 && rates[1] < 0.0 {

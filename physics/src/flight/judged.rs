@@ -15,7 +15,7 @@ const HALVINGS: u32 = 12;
 
 /// Half widths of the bands in which a launch and the walls lie, all values in them as likely.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scatter {
+pub struct LaunchDeviation {
     /// Of the speed, relative.
     pub speed: f64,
     /// Of the angle in rad.
@@ -46,12 +46,12 @@ pub struct Judged {
     pub least_speed: f64,
 }
 
-/// Flies the `launch`, those around it for the margin, and those of the `scatter` for the share.
-pub fn judge(setup: &Setup, landscape: &Landscape, launch: &Launch, scatter: &Scatter) -> Judged {
+/// Flies the `launch`, those around it for the margin, and those of the `deviation` for the share.
+pub fn judge(setup: &Setup, landscape: &Landscape, launch: &Launch, deviation: &LaunchDeviation) -> Judged {
     Judged {
         flight: fly(setup, landscape, launch, true),
         margin: margin(setup, landscape, launch),
-        landings: landings(setup, landscape, launch, scatter),
+        landings: landings(setup, landscape, launch, deviation),
         least_speed: landscape.least_speed(setup.mass),
     }
 }
@@ -71,7 +71,7 @@ pub fn map_of_landings(
     [speeds, angles]: [&[f64]; 2],
     spin: f64,
 ) -> Vec<Landing> {
-    let open = |angle: &&f64| !setup.chamber.is_beside_wall(**angle);
+    let open = |angle: &&f64| !setup.chamber.is_next_to_wall(**angle);
     let launches = angles
         .iter()
         .filter(open)
@@ -106,17 +106,22 @@ fn margin(setup: &Setup, landscape: &Landscape, launch: &Launch) -> Option<f64> 
 }
 
 /// Launches at points that fill the box of the scatter evenly: multiples of the powers of the root of x^4 = x + 1 (Roberts 2018).
-fn landings(setup: &Setup, landscape: &Landscape, launch: &Launch, scatter: &Scatter) -> Vec<Landing> {
+fn landings(
+    setup: &Setup,
+    landscape: &Landscape,
+    launch: &Launch,
+    deviation: &LaunchDeviation,
+) -> Vec<Landing> {
     const ROOT: f64 = 1.220_744_084_605_759_5;
     let landing = |k: u32| {
         let [speed, angle, restitution] =
             [1, 2, 3].map(|power| 2.0 * ((0.5 + f64::from(k) * ROOT.powi(-power)) % 1.0) - 1.0);
         let launch = Launch {
-            speed: launch.speed * (1.0 + scatter.speed * speed),
-            angle: launch.angle + scatter.angle * angle,
+            speed: launch.speed * (1.0 + deviation.speed * speed),
+            angle: launch.angle + deviation.angle * angle,
             ..*launch
         };
-        let restitution = (setup.restitution + scatter.restitution * restitution).clamp(0.0, 1.0);
+        let restitution = (setup.restitution + deviation.restitution * restitution).clamp(0.0, 1.0);
         let setup = Setup { restitution, ..setup.clone() };
         Landing { launch, seat: seat(&setup, landscape, &launch) }
     };

@@ -61,17 +61,17 @@ impl Landscape {
         let of_seat = seats.map(|seat| setup.field.potential(setup.mass, seat));
         let mut hollows: Vec<Hollow> = Vec::new();
         for (k, turn) in turns.iter().enumerate().filter(|(_, turn)| turn.lowest) {
-            let beside = [k.checked_sub(1), Some(k + 1)].map(|at| at.and_then(|at| turns.get(at)));
-            let range = [beside[0].map_or(low, |t| t.x), beside[1].map_or(high, |t| t.x)];
-            let rim = beside.iter().flatten().map(|t| t.energy).fold(f64::INFINITY, f64::min);
-            let held = held_by_friction(setup, range, turn.x);
+            let neighbours = [k.checked_sub(1), Some(k + 1)].map(|at| at.and_then(|at| turns.get(at)));
+            let range = [neighbours[0].map_or(low, |t| t.x), neighbours[1].map_or(high, |t| t.x)];
+            let rim = neighbours.iter().flatten().map(|t| t.energy).fold(f64::INFINITY, f64::min);
+            let sticking = friction_barrier(setup, range, turn.x);
             let in_range = |seat: &Vector| (range[0]..=range[1]).contains(&seat.x);
             let seat = match seats.iter().position(in_range) {
                 Some(0) => Seat::Same,
                 Some(_) => Seat::Other,
                 None => Seat::None,
             };
-            hollows.push(Hollow { range, certain_below: rim.min(held), x: turn.x, seat });
+            hollows.push(Hollow { range, certain_below: rim.min(sticking), x: turn.x, seat });
         }
         if let Some(sentence) = unheld(setup, &hollows) {
             return Err(sentence);
@@ -175,9 +175,9 @@ fn turns(setup: &Setup, x: &[f64], energy: &[f64]) -> Vec<Extremum> {
     let height = |s: &[usize; 2]| energy[s[0]];
     let mut found = Vec::new();
     for (k, stretch) in stretches.iter().enumerate() {
-        let beside = [k.checked_sub(1), Some(k + 1)].map(|at| at.and_then(|at| stretches.get(at)));
-        let above = beside.map(|other| other.is_none_or(|other| height(other) > height(stretch)));
-        let below = beside.map(|other| other.is_some_and(|other| height(other) < height(stretch)));
+        let neighbours = [k.checked_sub(1), Some(k + 1)].map(|at| at.and_then(|at| stretches.get(at)));
+        let above = neighbours.map(|other| other.is_none_or(|other| height(other) > height(stretch)));
+        let below = neighbours.map(|other| other.is_some_and(|other| height(other) < height(stretch)));
         let lowest = above == [true; 2];
         if lowest || below == [true; 2] {
             let sign = if lowest { 1.0 } else { -1.0 };
@@ -195,7 +195,7 @@ fn turns(setup: &Setup, x: &[f64], energy: &[f64]) -> Vec<Extremum> {
 
 /// Lowest potential in J in a `range` of x at which friction of surface and spring together can hold the sphere elsewhere than at
 /// the lowest point: the surface stops it from sliding, the spring from rolling.
-fn held_by_friction(setup: &Setup, range: [f64; 2], lowest_x: f64) -> f64 {
+fn friction_barrier(setup: &Setup, range: [f64; 2], lowest_x: f64) -> f64 {
     let mut least = f64::INFINITY;
     if setup.field.spring.as_ref().is_none_or(|spring| spring.friction == 0.0) || setup.friction == 0.0 {
         return least;
@@ -211,8 +211,8 @@ fn held_by_friction(setup: &Setup, range: [f64; 2], lowest_x: f64) -> f64 {
         let pull = setup.mass * setup.field.acceleration(setup.mass, f64::INFINITY, place);
         let (pressed, along) = (-pull.dot(&normal), pull.dot(&super::track::tangent(normal)).abs());
         let resisted = setup.field.resisting_moment(setup.radius, place) / setup.radius;
-        let held = pressed > 0.0 && along <= (setup.friction * pressed).min(resisted);
-        if held && (x - lowest_x).abs() > OFF_SEAT * setup.radius {
+        let sticking = pressed > 0.0 && along <= (setup.friction * pressed).min(resisted);
+        if sticking && (x - lowest_x).abs() > OFF_SEAT * setup.radius {
             least = least.min(setup.field.potential(setup.mass, place));
         }
     }

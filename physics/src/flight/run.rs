@@ -25,7 +25,7 @@ pub enum Ending {
     /// It comes to rest in a hollow that is no seat, at this x in m.
     Hollow(f64),
     /// Friction holds it at this x in m.
-    Held(f64),
+    Stuck(f64),
     /// It still moves at the end time.
     Moves,
     /// It still bounces after more touches than anybody can follow.
@@ -41,14 +41,14 @@ impl Ending {
     }
 
     /// Why the sphere is in no seat, or may not be, in a sentence.
-    pub fn told(&self) -> Option<String> {
+    pub fn reason(&self) -> Option<String> {
         let mm = |x: f64| format!("{:.3} mm", x * 1e3);
         match self {
             Ending::Seat(_) | Ending::Passed => None,
             Ending::Hollow(x) => {
                 Some(format!("the sphere comes to rest outside both seats, at x = {}", mm(*x)))
             }
-            Ending::Held(x) => Some(format!("friction holds the sphere on its way, at x = {}", mm(*x))),
+            Ending::Stuck(x) => Some(format!("friction holds the sphere on its way, at x = {}", mm(*x))),
             Ending::Moves => Some(
                 "the sphere still moves at the flight's `end_time`, with energy to leave every seat".into(),
             ),
@@ -61,7 +61,7 @@ impl Ending {
 
 /// The first touch after a launch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
+pub struct FlightContact {
     /// Time in s.
     pub time: f64,
     /// Centre of the sphere in m.
@@ -76,9 +76,9 @@ pub struct Flight {
     /// Time in s at which that was certain.
     pub time: f64,
     /// The first touch after the launch, if there was one.
-    pub first_touch: Option<Touch>,
+    pub first_contact: Option<FlightContact>,
     /// Number of touches.
-    pub touches: u32,
+    pub contacts: u32,
     /// States on the way, if they were asked for: after every step and at every touch.
     pub path: Vec<State>,
 }
@@ -119,25 +119,26 @@ pub(super) fn moved(
     landscape: &Landscape,
     start: State,
     mode: MotionMode,
-    asked: MotionRequest,
+    request: MotionRequest,
 ) -> Flight {
-    let mut running = FlightRun { setup, landscape, state: start, mode, events: 0, touches: 0, first: None };
-    let mut path = if asked.path { vec![start] } else { Vec::new() };
-    let side = asked.beyond.map(|x| (start.place.x - x).signum());
+    let mut running = FlightRun { setup, landscape, state: start, mode, events: 0, contacts: 0, first: None };
+    let mut path = if request.path { vec![start] } else { Vec::new() };
+    let side = request.beyond.map(|x| (start.place.x - x).signum());
     for _ in 0..MOST_STEPS {
-        let passed = asked.beyond.zip(side).is_some_and(|(x, side)| (running.state.place.x - x) * side < 0.0);
+        let passed =
+            request.beyond.zip(side).is_some_and(|(x, side)| (running.state.place.x - x) * side < 0.0);
         let ending = if passed { Some(Ending::Passed) } else { running.ending() };
         let ending = ending.or_else(|| running.go());
-        if asked.path {
+        if request.path {
             path.push(running.state);
         }
         if let Some(ending) = ending {
-            let FlightRun { state, first, touches, .. } = running;
-            return Flight { ending, time: state.time, first_touch: first, touches, path };
+            let FlightRun { state, first, contacts, .. } = running;
+            return Flight { ending, time: state.time, first_contact: first, contacts, path };
         }
     }
-    let FlightRun { state, first, touches, .. } = running;
-    Flight { ending: Ending::Moves, time: state.time, first_touch: first, touches, path }
+    let FlightRun { state, first, contacts, .. } = running;
+    Flight { ending: Ending::Moves, time: state.time, first_contact: first, contacts, path }
 }
 
 struct FlightRun<'a> {
@@ -146,8 +147,8 @@ struct FlightRun<'a> {
     state: State,
     mode: MotionMode,
     events: u32,
-    touches: u32,
-    first: Option<Touch>,
+    contacts: u32,
+    first: Option<FlightContact>,
 }
 
 impl FlightRun<'_> {
@@ -172,10 +173,10 @@ impl FlightRun<'_> {
     fn go(&mut self) -> Option<Ending> {
         match self.mode {
             MotionMode::Free => {
-                let (state, touched) = self.setup.fly_on(&self.state);
+                let (state, met) = self.setup.fly_on(&self.state);
                 self.state = state;
-                if let Some(wall) = touched {
-                    self.touch(wall);
+                if let Some(wall) = met {
+                    self.record_contact(wall);
                 }
                 None
             }
@@ -189,7 +190,7 @@ impl FlightRun<'_> {
                     Change::Passes(feature) => {
                         self.mode = MotionMode::On(Track::of(&self.setup.chamber, feature))
                     }
-                    Change::Touches(wall) => self.touch(wall),
+                    Change::Meets(wall) => self.record_contact(wall),
                     Change::Rests => return Some(self.at_rest()),
                 }
                 None
@@ -199,27 +200,28 @@ impl FlightRun<'_> {
     }
 
     /// Touches `wall`, and finds out what follows.
-    fn touch(&mut self, wall: usize) {
+    fn record_contact(&mut self, wall: usize) {
         let nearest = self.setup.chamber.nearest(wall, self.state.place);
         let normal = (self.state.place - nearest.point).normalize();
         if self.state.time > 0.0 && self.first.is_none() {
-            self.first = Some(Touch { time: self.state.time, place: self.state.place });
+            self.first = Some(FlightContact { time: self.state.time, place: self.state.place });
         }
         (self.state.velocity, self.state.spin) = rebound(self.setup, &self.state, normal);
-        self.touches += 1;
+        self.contacts += 1;
         self.events += 1;
-        self.settle();
+        self.come_to_rest();
     }
 
     /// Decides whether the sphere flies, stays on a surface or rests between two.
-    fn settle(&mut self) {
+    fn come_to_rest(&mut self) {
         let (setup, state) = (self.setup, self.state);
         let pull = setup.field.acceleration(setup.mass, state.time, state.place);
         let bounce = BOUNCE * setup.radius;
-        let mut held: Vec<(Track, f64)> = Vec::new();
+        let mut pressing: Vec<(Track, f64)> = Vec::new();
         for wall in 0..setup.chamber.walls() {
             let feature = setup.chamber.nearest(wall, state.place).feature;
-            if setup.chamber.gap(wall, state.place) > bounce || held.iter().any(|(t, _)| t.feature == feature)
+            if setup.chamber.gap(wall, state.place) > bounce
+                || pressing.iter().any(|(t, _)| t.feature == feature)
             {
                 continue;
             }
@@ -228,11 +230,11 @@ impl FlightRun<'_> {
             let [away, along] = [normal, super::track::tangent(normal)].map(|n| state.velocity.dot(&n));
             let pressed = -pull.dot(&normal) - along * along * track.curvature();
             if pressed > 0.0 && away * away < 2.0 * pressed * bounce {
-                held.push((track, pressed));
+                pressing.push((track, pressed));
             }
         }
-        held.sort_by(|a, b| b.1.total_cmp(&a.1));
-        self.mode = match held[..] {
+        pressing.sort_by(|a, b| b.1.total_cmp(&a.1));
+        self.mode = match pressing[..] {
             [] => MotionMode::Free,
             [(a, _), (b, _), ..] if state.velocity.norm_squared() < 2.0 * pull.norm() * bounce => {
                 let normals = [a, b].map(|track| track.normal(track.along(state.place)));
@@ -294,7 +296,7 @@ impl FlightRun<'_> {
             ([true, _], _) => Ending::Seat(Seat::Same),
             ([_, true], _) => Ending::Seat(Seat::Other),
             (_, MotionMode::Wedged(..)) => Ending::Hollow(place.x),
-            _ => Ending::Held(place.x),
+            _ => Ending::Stuck(place.x),
         }
     }
 }
@@ -310,10 +312,10 @@ impl Setup {
             state,
             mode: MotionMode::Free,
             events: 0,
-            touches: 0,
+            contacts: 0,
             first: None,
         };
-        running.settle();
+        running.come_to_rest();
         (running.state, running.mode)
     }
 }

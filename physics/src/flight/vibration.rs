@@ -45,8 +45,8 @@ fn shaken_over(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: Vec
     setup.field.shaken = Some(Excitation { direction, amplitude, wave: wave.clone() });
     setup.end_time += wave.end();
     let (state, mode) = setup.seated(landscape);
-    let asked = MotionRequest { path: false, beyond: Some(landscape.saddle.x) };
-    moved(&setup, landscape, state, mode, asked).ending == Ending::Passed
+    let request = MotionRequest { path: false, beyond: Some(landscape.saddle.x) };
+    moved(&setup, landscape, state, mode, request).ending == Ending::Passed
 }
 
 /// Least amplitude from `low` on for which something `happens`, by steps and halvings.

@@ -12,7 +12,7 @@ pub fn launch(scene: &Scene, summary: &Summary) -> Option<Launch> {
 }
 
 /// The flight that `scene` asks for.
-fn asked(scene: &Scene) -> Result<&Flight> {
+fn settings(scene: &Scene) -> Result<&Flight> {
     scene.flight.as_ref().ok_or_else(|| {
         Error::Usage(format!(
             "scene `{}` has no [flight]: add one, with spring, chamber and friction",
@@ -27,7 +27,7 @@ fn asked(scene: &Scene) -> Result<&Flight> {
 /// [`Error::Usage`] if it asks for none; the checks of the scene have seen to the rest.
 pub fn flight_of(scene: &Scene, restitution: f64) -> Result<(Setup, Landscape)> {
     let of_scene = |sentence: String| Error::Solver(format!("{}: {sentence}", scene.name));
-    let setup = asked(scene)?.setup(scene, restitution).map_err(of_scene)?;
+    let setup = settings(scene)?.setup(scene, restitution).map_err(of_scene)?;
     let landscape = Landscape::new(&setup).map_err(of_scene)?;
     Ok((setup, landscape))
 }
@@ -67,7 +67,7 @@ pub fn flight_summary(scene: &Scene, launch: Launch, restitution: f64) -> Result
 
 fn flown(scene: &Scene, launch: Launch, restitution: f64) -> Result<(FlightSummary, Ending)> {
     let (setup, landscape) = flight_of(scene, restitution)?;
-    let judged = judge(&setup, &landscape, &launch, &asked(scene)?.scatter);
+    let judged = judge(&setup, &landscape, &launch, &settings(scene)?.deviation);
     let ending = judged.flight.ending;
     let summary = FlightSummary {
         seat: ending.seat(),
@@ -78,7 +78,7 @@ fn flown(scene: &Scene, launch: Launch, restitution: f64) -> Result<(FlightSumma
         least_speed: judged.least_speed,
         restitution,
         launch,
-        reason: ending.told(),
+        reason: ending.reason(),
     };
     Ok((summary, ending))
 }
@@ -86,7 +86,7 @@ fn flown(scene: &Scene, launch: Launch, restitution: f64) -> Result<(FlightSumma
 /// That a verdict hangs on more than is known.
 fn warning(ending: Ending, share: f64) -> Option<String> {
     if let Ending::Moves | Ending::Bounces = ending {
-        return ending.told();
+        return ending.reason();
     }
     (share > 0.0 && share < 1.0).then(|| {
         format!(

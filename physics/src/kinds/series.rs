@@ -10,7 +10,7 @@ use std::fmt::Debug;
 /// What the impacts of a series share.
 pub trait Series: Debug + Send + Sync {
     /// Whether an impact takes tenths of a second, for a mesh is factorised, rather than a tenth of a millisecond.
-    fn is_dear(&self) -> bool {
+    fn is_expensive(&self) -> bool {
         false
     }
 

@@ -58,8 +58,8 @@ pub fn fit_loss_factor(loss_factor: f64, frequency: f64) -> Option<(Vec<Relaxati
         let x = 2.0 * PI * frequencies[row] * times[column];
         (x + loss_factor) / (1.0 + x * x)
     });
-    let wanted = DVector::from_element(frequencies.len(), loss_factor);
-    let ratios = system.svd(true, true).solve(&wanted, 1e-12).ok()?;
+    let target = DVector::from_element(frequencies.len(), loss_factor);
+    let ratios = system.svd(true, true).solve(&target, 1e-12).ok()?;
     let terms: Vec<Relaxation> = ratios
         .iter()
         .zip(&times)

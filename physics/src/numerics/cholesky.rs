@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_matrix_that_is_not_positive_definite_is_told() {
+    fn a_matrix_that_is_not_positive_definite_is_an_error() {
         let mut factor = Cholesky::with_capacity(3);
         assert!(!factor.factorise(2, |i, j| if i == j { 1.0 } else { 2.0 }));
         assert!(factor.factorise(1, |_, _| 1.0));

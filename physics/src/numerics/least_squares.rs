@@ -11,7 +11,7 @@ pub struct Fit<const N: usize> {
     /// Their standard errors, likewise. Shape (N).
     pub errors: [f64; N],
     /// Standard deviation of the values about the fit.
-    pub scatter: f64,
+    pub deviation: f64,
 }
 
 /// Fits `sum_i coefficients[i] basis[i]` to the values; rows are (basis, value). `None` if the basis is not independent or
@@ -39,7 +39,7 @@ pub fn fit<const N: usize>(rows: &[([f64; N], f64)]) -> Option<Fit<N>> {
     coefficients.iter().all(|c: &f64| c.is_finite()).then_some(Fit {
         coefficients,
         errors,
-        scatter: variance.sqrt(),
+        deviation: variance.sqrt(),
     })
 }
 

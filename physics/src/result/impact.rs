@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Energy that the contacts keep.
-const KEPT: &str = "kept_energy";
+const KEPT_ENERGY: &str = "kept_energy";
 
 /// What one impact of a series comes to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -28,11 +28,11 @@ pub struct Impact {
 impl Impact {
     /// What is compared of an impact, with its SI unit.
     pub const COMPARED: [(&'static str, &'static str); 4] =
-        [("efficiency", "1"), ("outer_force_peak", "N"), ("inner_force_peak", "N"), (KEPT, "J")];
+        [("efficiency", "1"), ("outer_force_peak", "N"), ("inner_force_peak", "N"), (KEPT_ENERGY, "J")];
 
     /// The value of the quantity called `name`, or of `kept_energy`: plastic work and what is locked in.
     pub fn value(&self, name: &str) -> Option<f64> {
-        if name == KEPT {
+        if name == KEPT_ENERGY {
             return Some(self.plastic_work? + self.locked_in_energy.unwrap_or(0.0));
         }
         self.quantities.value(name)
@@ -41,7 +41,11 @@ impl Impact {
     /// Half width of its 95 % band, absolute, if it is known.
     pub fn band(&self, name: &str) -> Option<f64> {
         let known = |name: &str| self.uncertainty.get(name).copied();
-        if name == KEPT { Some(known("plastic_work")? + known("locked_in_energy")?) } else { known(name) }
+        if name == KEPT_ENERGY {
+            Some(known("plastic_work")? + known("locked_in_energy")?)
+        } else {
+            known(name)
+        }
     }
 
     /// The impacts in the JSON `document` of a summary whose kind of scene has `quantities`.

@@ -175,10 +175,10 @@ mod tests {
     fn only_what_exceeds_its_bound_is_warned_of() {
         assert_eq!(HERTZ.at("outer", 0.2).warning(), None);
         assert_eq!(HERTZ.at("outer", f64::NAN).warning(), None);
-        let told = HERTZ.at("outer", 0.25).warning().expect("beyond");
+        let warning_text = HERTZ.at("outer", 0.25).warning().expect("beyond");
         assert!(
-            told.starts_with("outer contact radius / tip radius is 0.25, above its limit of 0.2: "),
-            "{told}"
+            warning_text.starts_with("outer contact radius / tip radius is 0.25, above its limit of 0.2: "),
+            "{warning_text}"
         );
         let barely = HERTZ.at("outer", 0.2004).warning().expect("beyond");
         assert!(barely.contains("is 0.2004, above"), "{barely}");

@@ -82,7 +82,7 @@ impl Shape {
     }
 
     /// Whether it is held at one end, so that its momentum is not its own.
-    pub fn is_held(&self) -> bool {
+    pub fn is_mounted(&self) -> bool {
         matches!(self, Shape::Bender(_) | Shape::Stack(_))
     }
 }

@@ -379,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_are_told_apart() {
+    fn faults_have_different_messages() {
         use QuantityError::*;
         let length = |text| parse(text, Dimension::LENGTH);
         assert_eq!(length("33 kg"), Err(WrongDimension("kg".into())));

@@ -4,8 +4,8 @@ mod plate_impact;
 mod seal_seat;
 
 use super::Context;
-use super::asked_model::AskedModel;
-use super::asked_model::ModelRequest;
+use super::requested_model::ModelRequest;
+use super::requested_model::RequestedModel;
 use crate::error::{Error, Result};
 use crate::kinds::{self, Kind, SharedBodies};
 use crate::reference::Stored;
@@ -21,7 +21,7 @@ pub(super) type Compared = (Vec<Outcome>, Vec<Cost>);
 
 /// The reduced models of a kind of scene.
 pub(super) trait ReducedModels: Sync {
-    /// Runs the model that is `asked` for, the scene's or the kind's last one if none is, one of a series of impacts that share `bodies`; without `curves` its history has no more
+    /// Runs the model that is `request` for, the scene's or the kind's last one if none is, one of a series of impacts that share `bodies`; without `curves` its history has no more
     /// samples than its limits need.
     ///
     /// # Errors
@@ -30,20 +30,20 @@ pub(super) trait ReducedModels: Sync {
         &self,
         _: &Context,
         scene: &Scene,
-        asked: &ModelRequest,
+        request: &ModelRequest,
         _bodies: &SharedBodies,
         _curves: bool,
     ) -> Result<Outcome> {
-        if let Some(mesh) = &asked.mesh {
+        if let Some(mesh) = &request.mesh {
             let mesh = mesh.display();
             return Err(Error::Usage(format!("--mesh {mesh}: the models of `{}` have no mesh", scene.name)));
         }
-        let model = asked.named(scene)?;
-        let tolerance = asked.integration_tolerance(DEFAULT_TOLERANCE)?;
-        kinds::of(scene).model(scene, model, asked.modes)?.run_with_history(tolerance)
+        let model = request.named(scene)?;
+        let tolerance = request.integration_tolerance(DEFAULT_TOLERANCE)?;
+        kinds::of(scene).model(scene, model, request.modes)?.run_with_history(tolerance)
     }
 
-    /// Whether [`ReducedModels::beside`] solves on the very mesh of the reference.
+    /// Whether [`ReducedModels::with_reference`] solves on the very mesh of the reference.
     fn shares_mesh(&self) -> bool {
         false
     }
@@ -53,28 +53,28 @@ pub(super) trait ReducedModels: Sync {
         kinds::of(scene).model(scene, model, None).is_ok()
     }
 
-    /// Runs the models `asked` for, with the tolerance of `auto`, without a reference; none if they need its mesh.
+    /// Runs the models `request` for, with the tolerance of `auto`, without a reference; none if they need its mesh.
     ///
     /// # Errors
     /// Those of the models.
-    fn alone(&self, scene: &Scene, (models, _): (&[AskedModel], Option<f64>)) -> Result<Vec<Outcome>> {
+    fn alone(&self, scene: &Scene, (models, _): (&[RequestedModel], Option<f64>)) -> Result<Vec<Outcome>> {
         let kind = kinds::of(scene);
-        let own = kind.models().iter().filter(|model| models.contains(&AskedModel::Named(**model)));
+        let own = kind.models().iter().filter(|model| models.contains(&RequestedModel::Named(**model)));
         own.map(|model| kind.model(scene, *model, None)?.run_with_history(DEFAULT_TOLERANCE)).collect()
     }
 
-    /// Runs those of the models `asked` for that there are, with the tolerance of `auto`, beside a reference.
+    /// Runs those of the models `request` for that there are, with the tolerance of `auto`, beside a reference.
     ///
     /// # Errors
     /// Those of the models.
-    fn beside(
+    fn with_reference(
         &self,
         _: &Context,
         scene: &Scene,
         _: &Stored,
-        asked: (&[AskedModel], Option<f64>),
+        request: (&[RequestedModel], Option<f64>),
     ) -> Result<Compared> {
-        Ok((self.alone(scene, asked)?, Vec::new()))
+        Ok((self.alone(scene, request)?, Vec::new()))
     }
 }
 
@@ -93,12 +93,12 @@ pub(super) fn of(scene: &Scene) -> &'static dyn ReducedModels {
     MODELS.iter().find(|(kind, _)| kind.name() == name).map_or(&Plain, |(_, models)| *models)
 }
 
-/// Whether one of the models `asked` for is one of `scene`; `auto` chooses among several.
-pub(super) fn has_one_of(scene: &Scene, asked: &[AskedModel]) -> bool {
+/// Whether one of the models `request` for is one of `scene`; `auto` chooses among several.
+pub(super) fn has_one_of(scene: &Scene, request: &[RequestedModel]) -> bool {
     let own = kinds::of(scene).models();
-    asked.iter().any(|asked| match asked {
-        AskedModel::Named(model) => own.contains(model),
-        AskedModel::Auto => own.len() > 1,
-        AskedModel::External => !scene.external.is_empty(),
+    request.iter().any(|request| match request {
+        RequestedModel::Named(model) => own.contains(model),
+        RequestedModel::Auto => own.len() > 1,
+        RequestedModel::External => !scene.external.is_empty(),
     })
 }

@@ -1,8 +1,8 @@
 //! The reduced models of plate impacts.
 
 use super::{Compared, ReducedModels};
-use crate::cli::asked_model::ModelRequest;
-use crate::cli::asked_model::{self, AskedModel};
+use crate::cli::requested_model::ModelRequest;
+use crate::cli::requested_model::{self, RequestedModel};
 use crate::cli::{Context, progress};
 use crate::curves::CommonAxis;
 use crate::error::{Error, Result};
@@ -27,31 +27,31 @@ impl ReducedModels for Plates {
         &self,
         _: &Context,
         scene: &Scene,
-        asked: &ModelRequest,
+        request: &ModelRequest,
         bodies: &SharedBodies,
         curves: bool,
     ) -> Result<Outcome> {
-        if let Some(mesh) = &asked.mesh {
+        if let Some(mesh) = &request.mesh {
             return Err(Error::Usage(format!(
                 "--mesh {}: scene `{}` is no seal seat; the models of plates make their own meshes",
                 mesh.display(),
                 scene.name
             )));
         }
-        let default = AskedModel::Named(scene.reduced.model.unwrap_or(Model::C));
-        let (reduced, tolerance) = match asked.model.unwrap_or(default) {
-            AskedModel::Named(model) => (
-                Reduced::in_series(scene.clone(), model, asked.modes, bodies)?,
-                asked.integration_tolerance(DEFAULT_TOLERANCE)?,
+        let default = RequestedModel::Named(scene.reduced.model.unwrap_or(Model::C));
+        let (reduced, tolerance) = match request.model.unwrap_or(default) {
+            RequestedModel::Named(model) => (
+                Reduced::in_series(scene.clone(), model, request.modes, bodies)?,
+                request.integration_tolerance(DEFAULT_TOLERANCE)?,
             ),
-            AskedModel::External => return Err(asked_model::beside_a_reference()),
-            AskedModel::Auto => {
-                if let Some(modes) = asked.modes {
+            RequestedModel::External => return Err(requested_model::needs_a_reference()),
+            RequestedModel::Auto => {
+                if let Some(modes) = request.modes {
                     return Err(Error::Usage(format!(
                         "--modes {modes}: --model auto chooses the number of modes"
                     )));
                 }
-                let tolerance = asked.tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
+                let tolerance = request.tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
                 (Reduced::auto(scene, tolerance)?, choice::integration_tolerance(tolerance))
             }
         };
@@ -61,18 +61,18 @@ impl ReducedModels for Plates {
     fn alone(
         &self,
         scene: &Scene,
-        (models, tolerance): (&[AskedModel], Option<f64>),
+        (models, tolerance): (&[RequestedModel], Option<f64>),
     ) -> Result<Vec<Outcome>> {
         let models = set_up(scene, &having(scene, models, |_| ()), tolerance)?;
         models.into_iter().map(|(body, _)| body.run_with_history(COMPARISON_TOLERANCE)).collect()
     }
 
-    fn beside(
+    fn with_reference(
         &self,
         context: &Context,
         scene: &Scene,
         stored: &Stored,
-        (models, tolerance): (&[AskedModel], Option<f64>),
+        (models, tolerance): (&[RequestedModel], Option<f64>),
     ) -> Result<Compared> {
         // the models' curves are drawn and compared as far as the reference's
         let end = CommonAxis::of_reference(&stored.outcome).map_or(0.0, |axis| axis.end);
@@ -90,8 +90,8 @@ impl ReducedModels for Plates {
                 1e3 * outcome.summary.solve_seconds
             ));
             if let Some(choice) = &outcome.summary.choice {
-                let told = asked_model::told(choice);
-                context.note(format_args!("{}: model {}, {told}", scene.name, body.model()));
+                let in_words = requested_model::choice_in_words(choice);
+                context.note(format_args!("{}: model {}, {in_words}", scene.name, body.model()));
             }
             Ok(outcome)
         });
@@ -99,43 +99,44 @@ impl ReducedModels for Plates {
     }
 }
 
-/// Those of `models` that have a form for `scene`; `left_out` is told why of the others. All if none has, which tells why, too.
-fn having(scene: &Scene, models: &[AskedModel], left_out: impl Fn(&Error)) -> Vec<AskedModel> {
-    let refused = |asked: &AskedModel| match asked {
-        AskedModel::Named(model) => Reduced::require(scene, *model).err(),
-        AskedModel::Auto | AskedModel::External => None,
+/// Those of `models` that have a form for `scene`; `omitted` is told why of the others. All if none has, which tells why, too.
+fn having(scene: &Scene, models: &[RequestedModel], omitted: impl Fn(&Error)) -> Vec<RequestedModel> {
+    let refused = |request: &RequestedModel| match request {
+        RequestedModel::Named(model) => Reduced::require(scene, *model).err(),
+        RequestedModel::Auto | RequestedModel::External => None,
     };
-    let kept: Vec<AskedModel> = models.iter().copied().filter(|asked| refused(asked).is_none()).collect();
-    if kept.is_empty() {
+    let supported: Vec<RequestedModel> =
+        models.iter().copied().filter(|request| refused(request).is_none()).collect();
+    if supported.is_empty() {
         return models.to_vec();
     }
-    models.iter().filter_map(refused).for_each(|error| left_out(&error));
-    kept
+    models.iter().filter_map(refused).for_each(|error| omitted(&error));
+    supported
 }
 
 /// The `models` of `scene`, each once, in the order asked for, with the time in s that each took to set up. A model that is
 /// named and also chosen by auto is compared as auto chose it.
-fn set_up(scene: &Scene, models: &[AskedModel], tolerance: Option<f64>) -> Result<Vec<(Reduced, f64)>> {
+fn set_up(scene: &Scene, models: &[RequestedModel], tolerance: Option<f64>) -> Result<Vec<(Reduced, f64)>> {
     let timed = |set_up: &dyn Fn() -> Result<Reduced>| {
         let start = Instant::now();
         set_up().map(|body| (body, start.elapsed().as_secs_f64()))
     };
     let mut chosen = None;
-    if models.contains(&AskedModel::Auto) {
+    if models.contains(&RequestedModel::Auto) {
         let tolerance = tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
         chosen = Some(timed(&|| Reduced::auto(scene, tolerance))?);
     }
     let auto = chosen.as_ref().map(|(body, _)| body.model());
     let mut done = Vec::new();
     let mut bodies = Vec::new();
-    for asked in models {
-        match *asked {
-            AskedModel::Auto => bodies.extend(chosen.take()),
-            AskedModel::Named(model) if auto != Some(model) && !done.contains(&model) => {
+    for request in models {
+        match *request {
+            RequestedModel::Auto => bodies.extend(chosen.take()),
+            RequestedModel::Named(model) if auto != Some(model) && !done.contains(&model) => {
                 done.push(model);
                 bodies.push(timed(&|| Reduced::new(scene, model, None))?);
             }
-            AskedModel::Named(_) | AskedModel::External => {}
+            RequestedModel::Named(_) | RequestedModel::External => {}
         }
     }
     Ok(bodies)

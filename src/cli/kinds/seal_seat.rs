@@ -3,8 +3,8 @@
 use super::{Compared, ReducedModels};
 use crate::body::cache::Cache;
 use crate::cli::Context;
-use crate::cli::asked_model::{AskedModel, ModelRequest};
 use crate::cli::progress::Bar;
+use crate::cli::requested_model::{ModelRequest, RequestedModel};
 use crate::error::Result;
 use crate::kinds::SharedBodies;
 use crate::kinds::seal_seat::{DEFAULT_TOLERANCE, SeatMesh, SeatModel};
@@ -21,21 +21,21 @@ impl ReducedModels for Seats {
         &self,
         context: &Context,
         scene: &Scene,
-        asked: &ModelRequest,
+        request: &ModelRequest,
         _: &SharedBodies,
         _: bool,
     ) -> Result<Outcome> {
-        let model = asked.named(scene)?;
+        let model = request.named(scene)?;
         let cache = Cache::from_environment();
         let bar = Bar::new(context, &scene.name);
-        let mesh = match &asked.mesh {
+        let mesh = match &request.mesh {
             Some(path) => SeatMesh::open(path)?,
             None => {
                 let show = &mut |step: &_| bar.show(step);
                 SeatMesh::open(&reference::seat_mesh_with(scene, Resolution::Paper, &cache, show)?)?
             }
         };
-        let reduced = SeatModel::new_with(scene, model, asked.modes, &mesh, &cache, &mut |part, done| {
+        let reduced = SeatModel::new_with(scene, model, request.modes, &mesh, &cache, &mut |part, done| {
             bar.part(part, done)
         })?;
         drop(bar);
@@ -45,7 +45,7 @@ impl ReducedModels for Seats {
             reduced.dofs,
             reduced.setup_seconds
         ));
-        let tolerance = asked.integration_tolerance(DEFAULT_TOLERANCE)?;
+        let tolerance = request.integration_tolerance(DEFAULT_TOLERANCE)?;
         reduced.run_with_history(tolerance)
     }
 
@@ -57,18 +57,18 @@ impl ReducedModels for Seats {
         model == Model::C
     }
 
-    fn alone(&self, _: &Scene, _: (&[AskedModel], Option<f64>)) -> Result<Vec<Outcome>> {
+    fn alone(&self, _: &Scene, _: (&[RequestedModel], Option<f64>)) -> Result<Vec<Outcome>> {
         Ok(Vec::new())
     }
 
-    fn beside(
+    fn with_reference(
         &self,
         context: &Context,
         scene: &Scene,
         stored: &Stored,
-        (models, _): (&[AskedModel], Option<f64>),
+        (models, _): (&[RequestedModel], Option<f64>),
     ) -> Result<Compared> {
-        if !models.contains(&AskedModel::Named(Model::C)) {
+        if !models.contains(&RequestedModel::Named(Model::C)) {
             return Ok(Compared::default());
         }
         let mesh = SeatMesh::open(&stored.folder.join("mesh.vtu"))?;

@@ -3,7 +3,7 @@
 //! The method knows its state and the rate of it at both ends of a step: of each approach the value and two derivatives,
 //! and so Hermite's polynomial of fifth degree, as exact as the step itself.
 
-use crate::dynamics::contact_ledger::ContactLedger;
+use crate::dynamics::contact_balance::ContactBalance;
 use crate::dynamics::integration::NEGLIGIBLE;
 use crate::dynamics::system::{System, dot};
 use crate::numerics::explicit_runge_kutta::Step;
@@ -41,8 +41,8 @@ impl ObservedContact {
     }
 
     /// What is compared of the account that the program keeps.
-    pub(super) fn of(account: &ContactLedger) -> Self {
-        let &ContactLedger { force_peak, contacts, end, closed, .. } = account;
+    pub(super) fn of(account: &ContactBalance) -> Self {
+        let &ContactBalance { force_peak, contacts, end, closed, .. } = account;
         Self { force_peak, contacts, end, closed, impulse: 0.0 }
     }
 }

@@ -3,8 +3,8 @@
 use super::between::{ContactWatch, ObservedContact};
 use super::kinds::StressImpact;
 use super::{DIFFERENCE_BOUND, END_BOUND, TOLERANCE};
-use crate::dynamics::assured;
 use crate::dynamics::equations::Equations;
+use crate::dynamics::error_control;
 use crate::dynamics::integration::Integration;
 use crate::dynamics::system::{INNER, System};
 use crate::dynamics::wet::{FluidForces, FluidLoad};
@@ -24,7 +24,7 @@ const LONGER: f64 = 1.5;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum IndependentCheck {
     /// There is no independent solution at a bearable cost.
-    TooDear,
+    TooExpensive,
     /// The independent solution is itself uncertain: at two tolerances it differs by more than a third of the bound. Or the result
     /// says itself that it is no more exact.
     Undecided,
@@ -35,7 +35,7 @@ pub(super) enum IndependentCheck {
 /// Largest differences of two solutions, relative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Differences {
-    /// Of a velocity, over the impact speed, and of a force peak (see [`assured::differences`]).
+    /// Of a velocity, over the impact speed, and of a force peak (see [`error_control::differences`]).
     pub(super) velocity: f64,
     pub(super) force: f64,
     /// Of the efficiency, over the larger of it and 1.
@@ -73,7 +73,7 @@ impl Answer {
     pub(super) fn differences(self, other: Self, system: &System) -> Differences {
         let both = [self, other];
         let peaks = both.map(|answer| answer.contacts.map(|contact| contact.force_peak));
-        let [velocity, force] = assured::differences(system, both.map(|answer| answer.velocity), peaks);
+        let [velocity, force] = error_control::differences(system, both.map(|answer| answer.velocity), peaks);
         let efficiency = both.map(|answer| {
             let energy = 0.5 * system.masses[1] * answer.velocity[1].powi(2);
             energy / system.initial_energy()
@@ -104,13 +104,14 @@ pub(super) fn compare(impact: &StressImpact, result: &Integration) -> Independen
     let solve = |tolerance, work| solve(system, impact.forces.as_ref(), end_time, tolerance, work);
     let ours = Answer::from(result);
     // the program warns of contacts that it cannot count
-    let countable = result.contacts.iter().all(|contact| contact.least_turn > assured::ENOUGH * TOLERANCE);
+    let countable =
+        result.contacts.iter().all(|contact| contact.least_turn > error_control::ENOUGH * TOLERANCE);
     let apart = |one: Answer, two: Answer| {
         let found = one.differences(two, system);
         Differences { contacts: found.contacts.filter(|_| countable), ..found }
     };
     let [quick, careful] = TOLERANCES;
-    let Some(quick) = solve(quick, WORK) else { return IndependentCheck::TooDear };
+    let Some(quick) = solve(quick, WORK) else { return IndependentCheck::TooExpensive };
     let difference = apart(ours, quick);
     // much of a larger one is the quick solution's own
     if difference.within(0.1 * bound) {

@@ -12,7 +12,7 @@ mod tests;
 pub use kinds::{StressCase, StressImpact, UnitPlateModes};
 pub use results::{CaseMotion, CaseResult, StressResults, results};
 
-use crate::dynamics::assured::{all_within, assured};
+use crate::dynamics::error_control::{all_within, controlled};
 use crate::dynamics::integrate;
 use crate::dynamics::integration::{Integration, Options};
 use crate::error::{Error, Result};
@@ -219,7 +219,7 @@ fn options(impact: &StressImpact) -> Options {
 
 /// Solves an impact as the program does.
 fn integrated(impact: &StressImpact, options: &Options) -> Result<Integration> {
-    assured(options, &impact.system, |options| integrate(&impact.system, impact.forces.as_ref(), options))
+    controlled(options, &impact.system, |options| integrate(&impact.system, impact.forces.as_ref(), options))
 }
 
 /// Solves an impact and looks at what has to hold.
@@ -257,7 +257,7 @@ fn judge(impact: &StressImpact, result: &Integration, solved: &mut StressRun) ->
     solved.values.push(("steps", result.steps as f64));
     let mut broken = Vec::new();
     match independent::compare(impact, result) {
-        IndependentCheck::TooDear => {}
+        IndependentCheck::TooExpensive => {}
         IndependentCheck::Undecided => (solved.compared, solved.undecided) = (true, true),
         IndependentCheck::Differences(found) => {
             solved.compared = true;

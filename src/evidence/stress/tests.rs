@@ -19,7 +19,7 @@ fn error(case: &StressCase, result: &Integration) -> f64 {
 
 /// The ninth touch of the light inner body lasts 0.2 % of a contact, between two Gauss points of a step.
 #[test]
-fn a_short_touch_is_not_passed() {
+fn a_short_contact_is_not_missed() {
     let case = draw(242_304);
     let result = integrate(&case.dry.system, None, &options(&case, 1e-7)).unwrap();
     assert_eq!(result.contacts[1].contacts, 9);
@@ -30,10 +30,10 @@ fn a_short_touch_is_not_passed() {
 #[test]
 fn amplified_errors_are_estimated_and_mended() {
     let case = draw(236_931);
-    let (system, asked) = (&case.dry.system, options(&case, 1e-7));
-    let plain = integrate(system, None, &asked).unwrap();
+    let (system, requested) = (&case.dry.system, options(&case, 1e-7));
+    let plain = integrate(system, None, &requested).unwrap();
     assert!(error(&case, &plain) > 1e-5 && plain.error_estimate.is_none());
-    let sure = assured(&asked, system, |options| integrate(system, None, options)).unwrap();
+    let sure = controlled(&requested, system, |options| integrate(system, None, options)).unwrap();
     let estimate = sure.error_estimate.unwrap();
     assert!(error(&case, &sure) <= estimate && estimate <= 1e-6, "{estimate:e}");
 }
@@ -44,14 +44,14 @@ fn amplified_errors_are_estimated_and_mended() {
 fn defects_of_many_steps_add_up() {
     for seed in [30_000_004_755, 14_000_015_476] {
         let case = draw(seed);
-        let (system, asked) = (&case.dry.system, options(&case, 1e-7));
+        let (system, requested) = (&case.dry.system, options(&case, 1e-7));
         let exact = integrate(system, None, &options(&case, 1e-11)).unwrap();
         let apart = |result: &Integration| {
             let peaks = [result, &exact].map(|result| result.contacts.map(|c| c.force_peak));
-            crate::dynamics::assured::differences(system, [result.velocity, exact.velocity], peaks)[1]
+            crate::dynamics::error_control::differences(system, [result.velocity, exact.velocity], peaks)[1]
         };
-        assert!(apart(&integrate(system, None, &asked).unwrap()) > 1e-5);
-        let sure = assured(&asked, system, |options| integrate(system, None, options)).unwrap();
+        assert!(apart(&integrate(system, None, &requested).unwrap()) > 1e-5);
+        let sure = controlled(&requested, system, |options| integrate(system, None, options)).unwrap();
         assert!(apart(&sure) < 1e-6, "{seed}: {:e}", apart(&sure));
     }
 }
@@ -120,7 +120,7 @@ fn force_peaks_and_the_momentum_of_films_are_within_their_bounds() {
 
 /// From a guess in which the inner contact is open the first sweep closes it, far from where it settles.
 #[test]
-fn a_sweep_across_a_touch_does_not_count_as_settled() {
+fn an_iteration_across_a_contact_is_not_converged() {
     assert_eq!(run(1, 7_000_019_122, &|| ()).unwrap().failures, []);
 }
 
@@ -145,7 +145,7 @@ fn a_force_far_below_the_others_is_solved_for_itself() {
 
 /// Vibrations bring the outer body and the plate together once more, between the points of a step.
 #[test]
-fn a_short_touch_in_a_fluid_is_not_passed() {
+fn a_short_contact_in_a_fluid_is_not_missed() {
     let report = run(1, 20_105_727, &|| ()).unwrap();
     assert_eq!((report.failures, report.wet_compared), (vec![], 1));
 }
@@ -178,7 +178,7 @@ fn a_plate_that_lies_on_the_inner_body_is_refused_at_once() {
 /// Fast bodies move together, and the film answers to the rounding of their rates with forces far above those of the contact beside it:
 /// steps of 1e-11 s did not settle either.
 #[test]
-fn a_film_that_answers_to_rounding_settles() {
+fn a_film_that_answers_to_rounding_converges() {
     let report = run(1, 10_000_011_920, &|| ()).unwrap();
     assert_eq!((report.failures, report.beyond_model), (vec![], vec![10_000_011_920]));
     assert!(report.worst["steps"].value < 1000.0, "{:?}", report.worst["steps"]);
@@ -212,7 +212,7 @@ fn the_peak_under_a_light_plate_is_as_exact_as_any() {
 
 /// A free foil of 2 g between 1.7 kg and 1300 kg that close in on it: it rattles 37 000 times before they part.
 #[test]
-fn a_foil_that_rattles_endlessly_is_refused_as_that() {
+fn a_thin_plate_with_endless_impacts_is_refused() {
     let case = draw(12_000_010_418);
     let solved = integrate(&case.dry.system, None, &options(&case, 1e-7));
     let Err(Error::BeyondModel(sentence)) = solved else { panic!("{solved:?}") };
@@ -227,7 +227,7 @@ fn agreement_by_chance_does_not_count() {
 
 /// 148 contacts, which amplify errors a hundred thousand times: the result says so.
 #[test]
-fn a_result_that_says_it_is_uncertain_is_undecided() {
+fn a_result_with_a_warning_of_its_uncertainty_is_undecided() {
     let report = run(1, 14_000_099_639, &|| ()).unwrap();
     assert_eq!((report.failures, report.undecided), (vec![], vec![14_000_099_639]));
 }
@@ -235,7 +235,7 @@ fn a_result_that_says_it_is_uncertain_is_undecided() {
 /// A foil of .1 mm between 23 kg and 23 t trembles at 1e8 rad/s on an inner contact a hundred thousand times as stiff as the outer one:
 /// five million steps follow it through a tenth of the impact.
 #[test]
-fn a_foil_that_trembles_for_ever_is_refused_as_that() {
+fn a_thin_plate_with_endless_chatter_is_refused() {
     let case = draw(14_000_012_920);
     let solved = integrate(&case.dry.system, None, &options(&case, 1e-7));
     let Err(Error::BeyondModel(sentence)) = solved else { panic!("{solved:?}") };
@@ -261,7 +261,7 @@ fn an_uncertain_release_is_solved_again() {
 /// A light plate bounces between the bodies while they part: points of a sweep once had five contacts for seven, and releases that were
 /// 1e-3 and 7e-3 off. A light inner body vibrates on its contact, and the first solution was 1.5e-3 off.
 #[test]
-fn points_of_a_sweep_are_right_or_say_that_they_are_not() {
+fn points_of_a_sweep_are_right_or_have_a_warning() {
     for seed in [30_000_000_172, 31_000_000_143, 32_000_003_614, 43_000_000_074] {
         assert_eq!(run(1, seed, &|| ()).unwrap().sweep.wrong.len(), 0, "{seed}");
     }

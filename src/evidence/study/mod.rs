@@ -8,7 +8,7 @@ mod write;
 
 pub use kinds::*;
 pub use plot::{Axis, Only, Panel, figure};
-pub use write::{MOST_ROWS, csv, json, markdown, told, write};
+pub use write::{MOST_ROWS, csv, in_words, json, markdown, write};
 
 use crate::error::Result;
 use crate::project::project_root;

@@ -20,13 +20,13 @@ const PNG_SCALE: f32 = 3.0;
 /// [`Error::Io`] naming the file.
 pub fn write(study: &Study, figure: Option<String>, dir: &Path) -> Result<Vec<PathBuf>> {
     let mut files = vec![("json", json(study)?.into_bytes()), ("csv", csv(study)?.into_bytes())];
-    let mut told = markdown(study);
+    let mut text = markdown(study);
     if let Some(svg) = figure {
-        told += &format!("\n![{0}]({0}.svg)\n", study.study);
+        text += &format!("\n![{0}]({0}.svg)\n", study.study);
         files.push(("png", png(&svg, PNG_SCALE)?));
         files.push(("svg", svg.into_bytes()));
     }
-    files.push(("md", told.into_bytes()));
+    files.push(("md", text.into_bytes()));
     let mut written = Vec::new();
     for (extension, bytes) in files {
         let path = dir.join(format!("{}.{extension}", study.study));
@@ -81,7 +81,7 @@ pub fn markdown(study: &Study) -> String {
 }
 
 /// For the terminal: as [`markdown`], of a long table only the first [`MOST_ROWS`] rows.
-pub fn told(study: &Study) -> String {
+pub fn in_words(study: &Study) -> String {
     let mut short = study.clone();
     short.rows.truncate(MOST_ROWS);
     markdown(&short)

@@ -141,12 +141,12 @@ pub(super) fn dat(text: &str) -> Result<String, String> {
     rows.table()
 }
 
-/// The table of a `.frd` file in text form: of its columns those that are `wanted`, each called by field, node and component
+/// The table of a `.frd` file in text form: of its columns those that are `requested`, each called by field, node and component
 /// (`DISP 12 D2`).
 ///
 /// # Errors
 /// One sentence with the line.
-pub(super) fn frd(text: &str, wanted: &[&str]) -> Result<String, String> {
+pub(super) fn frd(text: &str, requested: &[&str]) -> Result<String, String> {
     let mut rows = Rows::default();
     let (mut time, mut field, mut components) = (0.0, String::new(), Vec::new());
     for (number, line) in text.lines().enumerate() {
@@ -168,7 +168,8 @@ pub(super) fn frd(text: &str, wanted: &[&str]) -> Result<String, String> {
                 let node = part(line, 3, 10).ok_or_else(fault)?;
                 let named =
                     components.iter().map(|component| format!("{field} {node} {component}")).enumerate();
-                let own: Vec<_> = named.filter(|(_, heading)| wanted.contains(&heading.as_str())).collect();
+                let own: Vec<_> =
+                    named.filter(|(_, heading)| requested.contains(&heading.as_str())).collect();
                 let values = match own.is_empty() {
                     true => Vec::new(),
                     false => line.get(13..).and_then(packed).ok_or_else(fault)?,
@@ -303,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn fields_become_columns_of_the_nodes_wanted() {
+    fn fields_become_columns_of_the_requested_nodes() {
         let table = frd(FRD, &["DISP 5 D3", "VELO 5 V3"]).expect("a table");
         let lines: Vec<&str> = table.lines().collect();
         assert_eq!(lines[..2], ["time,DISP 5 D3,VELO 5 V3", "1e-7,-4.39181e-8,-3.28865e-1"]);
@@ -320,7 +321,7 @@ mod tests {
         let glued = FRD.replacen("-5.94162E-09-4.39181E-08", "-5.94162E-094.39181E-08", 1);
         assert_eq!(packed(" 1.00000E-10-2.00000E-1003.00000E+01"), Some(vec![1e-10, -2e-100, 30.0]));
         assert!(frd(&glued, &["DISP 5 D3"]).is_ok());
-        let lacking = FRD.replacen("-5.94162E-09-4.39181E-08", "-4.39181E-08", 1);
-        assert!(frd(&lacking, &["DISP 5 D3"]).is_err_and(|reason| reason.contains("2 values of 3")));
+        let incomplete = FRD.replacen("-5.94162E-09-4.39181E-08", "-4.39181E-08", 1);
+        assert!(frd(&incomplete, &["DISP 5 D3"]).is_err_and(|reason| reason.contains("2 values of 3")));
     }
 }

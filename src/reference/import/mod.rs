@@ -98,7 +98,7 @@ fn history(
     let mut reader = table::csv_reader(text.as_bytes(), delimiter);
     let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
     let columns = mapping.columns(kind, &header.iter().collect::<Vec<_>>())?;
-    external::assembled(kind, from_first_touch(table::read(&mut reader, &columns, FEWEST)?)?)
+    external::assembled(kind, from_first_contact(table::read(&mut reader, &columns, FEWEST)?)?)
 }
 
 /// A table of text as CSV with headings, which are numbers where it has none. Every line keeps its place.
@@ -124,7 +124,7 @@ fn plain<'f>(text: &str, form: &'f Form) -> std::result::Result<(String, &'f For
 }
 
 /// The columns from t = 0 on, where a sample is put if there is none.
-fn from_first_touch(columns: Columns) -> std::result::Result<Columns, String> {
+fn from_first_contact(columns: Columns) -> std::result::Result<Columns, String> {
     let Columns { time, values } = columns;
     let first = time.partition_point(|t| *t < 0.0);
     if first == time.len() || (first == 0 && time[0] > 0.0) {

@@ -6,7 +6,7 @@ use crate::comparison::{
     Verdict,
 };
 use crate::format::{model_name, percent, significant, words};
-use crate::report::{Report, SceneReport, row_told};
+use crate::report::{Report, SceneReport, row_in_words};
 use std::path::Path;
 
 /// GitHub shows this many errors of a step, and as many warnings.
@@ -124,11 +124,11 @@ fn findings(comparison: &SceneComparison, rules: GateRules) -> Vec<GateFinding<'
     for model in &comparison.models {
         let name = format!("model {}", model.model);
         found.extend(broken(&name, &model.integrity));
-        for row in model.discrepancies.iter().filter(|d| d.is_told()) {
+        for row in model.discrepancies.iter().filter(|d| d.is_reported()) {
             found.push(GateFinding {
                 verdict: row.verdict,
                 of: format!("{name}, {}", words(&row.quantity)),
-                message: row_told(row),
+                message: row_in_words(row),
                 model: Some(&model.model),
                 row: Some(row),
             });

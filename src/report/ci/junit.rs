@@ -5,8 +5,8 @@ use crate::comparison::{Check, Discrepancy, GateRules, SceneComparison, Undecide
 use crate::error::{Error, Result};
 use crate::format::{percent, prefixed, with_unit};
 use crate::report::Report;
+use crate::report::existing::Folder;
 use crate::report::export::Export;
-use crate::report::standing::Folder;
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 
 /// The checks of this run.
@@ -81,10 +81,10 @@ fn case(scene: &str, model: &str, row: &Discrepancy, rules: GateRules) -> TestCa
     };
     let mut case = match (row.verdict, rules.undecided) {
         _ if row.is_refused(rules) && row.verdict != Verdict::NotGated => {
-            named(scene, model, &row.quantity, Some(told(row)))
+            named(scene, model, &row.quantity, Some(in_words(row)))
         }
         (Verdict::NotGated, _) => skipped("not gated: the scene has no tolerance for it".to_owned()),
-        (Verdict::Undecided, Undecided::Warn) => skipped(told(row)),
+        (Verdict::Undecided, Undecided::Warn) => skipped(in_words(row)),
         _ => named(scene, model, &row.quantity, None),
     };
     case.add_property(Property::new("verdict", row.verdict.name()));
@@ -123,7 +123,7 @@ fn integrity_case(scene: &str, source: &str, check: &Check) -> TestCase {
 }
 
 /// What is wrong with a row, or open, in one sentence with numbers, unit and bound.
-pub(crate) fn told(row: &Discrepancy) -> String {
+pub(crate) fn in_words(row: &Discrepancy) -> String {
     let to = prefixed(&row.unit, row.reference.filter(|r| *r != 0.0).or(row.reduced).unwrap_or(0.0));
     let side = |value: Option<f64>| value.map_or("not determined".into(), |v| with_unit(v, to, 4));
     let values = format!("{}: model {}, reference {}", row.quantity, side(row.reduced), side(row.reference));

@@ -3,11 +3,11 @@
 use crate::comparison::{AMONG, BandVerdict, Check, Discrepancy, ModelComparison};
 use crate::error::Result;
 use crate::format::{model_name, percent, prefixed, significant, with_unit, words};
+use crate::report::existing::{self, ExistingScene, Folder};
 use crate::report::export::Export;
 use crate::report::overview::{ModelOverview, Overview};
 use crate::report::page::section;
 use crate::report::page::validated_map::{self, ValidatedMap};
-use crate::report::standing::{self, Folder, Standing};
 use crate::report::{Report, SceneReport, kinds};
 use std::cmp::Reverse;
 
@@ -31,27 +31,27 @@ impl Export<Folder<'_>> for Markdown {
 
 /// Markdown of the whole report, as far as it fits into a comment on GitHub.
 pub fn markdown(report: &Report) -> String {
-    of(report, &standing::of_run(report))
+    of(report, &existing::of_run(report))
 }
 
 /// Markdown of all scenes whose results stand in a folder; those that are kept have their tables on their pages. So have
 /// those for which there is no room: the scenes with the worst verdicts come first.
-pub(crate) fn of(report: &Report, scenes: &[Standing]) -> String {
-    let urgency = |scene: &Standing| Reverse(scene.overview.verdict);
+pub(crate) fn of(report: &Report, scenes: &[ExistingScene]) -> String {
+    let urgency = |scene: &ExistingScene| Reverse(scene.overview.verdict);
     let rows = scenes.iter().map(|scene| {
         let rows = scene.overview.models.iter().map(|model| row(&scene.overview.scene, model));
         (urgency(scene), rows.collect())
     });
     let mut text = format!(
         "# impactcheck: {}\n\n| scene | model | verdict | efficiency | reference | largest discrepancy of the summary |\n|---|---|---|--:|--:|---|\n",
-        standing::verdict(scenes)
+        existing::verdict(scenes)
     );
     let rows = fitted(&rows.collect::<Vec<_>>(), MOST_ROWS);
     text.extend(rows.iter().flatten().map(String::as_str));
-    let left_out = rows.iter().filter(|row| row.is_none()).count();
-    if left_out > 0 {
+    let omitted = rows.iter().filter(|row| row.is_none()).count();
+    if omitted > 0 {
         text += &format!(
-            "\n{left_out} more scenes, with no worse verdicts, are in `index.html` and `comparison.json`.\n"
+            "\n{omitted} more scenes, with no worse verdicts, are in `index.html` and `comparison.json`.\n"
         );
     }
     text += &format!("\n{AMONG}\n");
@@ -70,16 +70,16 @@ fn size(text: &str) -> usize {
 /// A section per scene, with its tables as far as there is room; the scenes of this run first.
 fn sections<O: Ord>(
     report: &Report,
-    scenes: &[Standing],
-    urgency: impl Fn(&Standing) -> O,
+    scenes: &[ExistingScene],
+    urgency: impl Fn(&ExistingScene) -> O,
     room: usize,
 ) -> String {
     let of_run = |own: &SceneReport| scenes.iter().find(|s| s.overview.scene == own.comparison.scene);
     let of_run = |own| of_run(own).expect("the scenes of this run are among those of its folder");
     let own = report.scenes.iter().map(|own| (urgency(of_run(own)), brief(of_run(own), "")));
-    let kept = scenes.iter().filter(|scene| scene.is_kept());
-    let kept = kept.map(|scene| (urgency(scene), brief(scene, &scene.kept())));
-    let briefs: Vec<(O, String)> = own.chain(kept).collect();
+    let earlier = scenes.iter().filter(|scene| scene.is_earlier());
+    let earlier = earlier.map(|scene| (urgency(scene), brief(scene, &scene.earlier())));
+    let briefs: Vec<(O, String)> = own.chain(earlier).collect();
     let mut chosen = fitted(&briefs, room / 4);
     let mut left = room - chosen.iter().flatten().map(|text| size(text)).sum::<usize>();
     for k in by_urgency(&briefs).filter(|k| *k < report.scenes.len()) {
@@ -112,7 +112,7 @@ fn fitted<O: Ord>(pieces: &[(O, String)], room: usize) -> Vec<Option<String>> {
 }
 
 /// Verdict of a scene whose tables are on its page, and the command that makes it.
-fn brief(scene: &Standing, when: &str) -> String {
+fn brief(scene: &ExistingScene, when: &str) -> String {
     let Overview { scene, verdict, command, .. } = &scene.overview;
     let when = if when.is_empty() { String::new() } else { format!("{when} ") };
     format!(

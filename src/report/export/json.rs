@@ -2,8 +2,8 @@
 
 use super::Export;
 use crate::error::Result;
-use crate::report::standing::Folder;
-use crate::report::{Report, standing};
+use crate::report::existing::Folder;
+use crate::report::{Report, existing};
 
 /// Pretty JSON of [`crate::comparison::Comparison`], of every scene also what tables of several scenes show (`overview`),
 /// ending with a line break.
@@ -11,7 +11,7 @@ use crate::report::{Report, standing};
 /// # Errors
 /// [`crate::Error::Internal`] if it can't be serialised.
 pub fn json(report: &Report) -> Result<String> {
-    standing::document(report, &standing::of_run(report))
+    existing::document(report, &existing::of_run(report))
 }
 
 /// The document of all scenes of a folder.
@@ -23,6 +23,6 @@ impl Export<Folder<'_>> for Json {
     }
 
     fn bytes(&self, folder: &Folder) -> Result<Vec<u8>> {
-        standing::document(folder.report, folder.scenes).map(String::into_bytes)
+        existing::document(folder.report, folder.scenes).map(String::into_bytes)
     }
 }

@@ -1,6 +1,6 @@
 //! The map of landings: the seat reached over speed and angle of the launch, and the launches of the share in their bands.
 
-use crate::flight::{Landing, Landscape, Launch, Scatter, Seat, Setup, map_of_landings};
+use crate::flight::{Landing, Landscape, Launch, LaunchDeviation, Seat, Setup, map_of_landings};
 use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::chart::{CHART_WIDTH, LEFT, PANEL_GAP};
 use crate::plot::svg::{Svg, Theme, x2};
@@ -32,7 +32,7 @@ pub(crate) fn map_picture(
     setup: &Setup,
     landscape: &Landscape,
     flight: &FlightSummary,
-    scatter: &Scatter,
+    deviation: &LaunchDeviation,
 ) -> String {
     let centre = [flight.launch.speed, flight.launch.angle];
     let half = [centre[0] * REACH[0], REACH[1]];
@@ -41,7 +41,7 @@ pub(crate) fn map_picture(
     });
     let row = |angle: &f64| map_of_landings(setup, landscape, [&speeds, &[*angle]], flight.launch.spin);
     let rows: Vec<Vec<Landing>> = angles.par_iter().map(row).collect();
-    let bands = [centre[0] * scatter.speed, scatter.angle];
+    let bands = [centre[0] * deviation.speed, deviation.angle];
     let wide = plot(0, centre, half);
     // a band without width is drawn as if it had a little
     let near = plot(1, centre, [0, 1].map(|k| (1.0 + ROOM) * bands[k].max(1e-3 * half[k])));

@@ -125,7 +125,7 @@ pub(crate) fn panel(
     let y_marks = plot.y.marks((plot.height / 45.0) as usize);
     html! {
         (plot.grid(&geometry.instants(plot), &y_marks))
-        (plot.beside(&y_marks, shown.label))
+        (plot.left_labels(&y_marks, shown.label))
         @for band in &layout.bands { path.fig-band d=(path(band) + "Z") {} }
         @for (line, bodies) in &layout.drawn {
             @for body in bodies { (stroke(line, &path(body))) }

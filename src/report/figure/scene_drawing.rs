@@ -35,8 +35,8 @@ impl DrawingScale {
 
     /// A bar of a round length beside which lengths can be read, from (`x`, `y`) px on.
     pub(crate) fn bar(&self, x: f64, y: f64) -> Markup {
-        const WANTED: f64 = 70.0;
-        let length = round_below(WANTED / self.factor);
+        const SCALE_BAR: f64 = 70.0;
+        let length = round_below(SCALE_BAR / self.factor);
         let end = x + length * self.factor;
         html! {
             path.fig-frame data-scale=(self.factor) d=(format!("M{0} {1}V{2}H{3}V{1}", x2(x), x2(y - 5.0), x2(y), x2(end))) {}
@@ -47,14 +47,14 @@ impl DrawingScale {
 
 /// The materials of a scene, each once.
 pub(crate) fn materials<'a>(of: impl IntoIterator<Item = &'a Material>) -> Vec<(String, String)> {
-    let mut told: Vec<(String, String)> = Vec::new();
+    let mut facts: Vec<(String, String)> = Vec::new();
     for material in of {
-        if told.iter().all(|(name, _)| *name != material.name) {
+        if facts.iter().all(|(name, _)| *name != material.name) {
             let yielding = material
                 .yield_strength
                 .map(|y| format!(", yield strength {}", measure(y, "Pa")))
                 .unwrap_or_default();
-            told.push((
+            facts.push((
                 material.name.clone(),
                 format!(
                     "E {}, ν {}, ρ {} kg/m³{yielding}",
@@ -65,5 +65,5 @@ pub(crate) fn materials<'a>(of: impl IntoIterator<Item = &'a Material>) -> Vec<(
             ));
         }
     }
-    told
+    facts
 }

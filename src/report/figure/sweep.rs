@@ -63,8 +63,8 @@ impl Drawn {
     fn follows_rule(self, table: &Table) -> bool {
         let plan = table.plan();
         let scene = plan.template().scene();
-        let touches = kinds::of(scene).starts_in_contact(scene);
-        self.name == "efficiency" && touches && plan.fields().all(|field| field.path() != "inner.gap")
+        let in_contact = kinds::of(scene).starts_in_contact(scene);
+        self.name == "efficiency" && in_contact && plan.fields().all(|field| field.path() != "inner.gap")
     }
 
     fn shown(self, table: &Table) -> DrawnNumber {

@@ -41,7 +41,7 @@ pub(super) trait Presentation: Sync {
     fn panels(&self) -> &'static [PanelOf];
 
     /// What the curves are, in a sentence.
-    fn curves_told(&self) -> &'static str;
+    fn curves_caption(&self) -> &'static str;
 
     /// What a stored solution has to be drawn.
     fn attachments(&self, _: &Stored) -> Attachments {

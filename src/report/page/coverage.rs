@@ -1,9 +1,9 @@
 //! The page of coverage: features of scenes in rows, models and what they are held against in columns.
 
-use crate::coverage::{CLOSED_FORM, Coverage, FeatureCoverage, Partner};
+use crate::coverage::{CLOSED_FORM, Coverage, FeatureComparison, FeatureCoverage};
 use crate::format::{percent_above, words};
+use crate::report::existing::ExistingScene;
 use crate::report::page::html::{page, scrolled};
-use crate::report::standing::Standing;
 use crate::report::trust::size_class;
 use maud::{Markup, html};
 
@@ -16,15 +16,15 @@ pub(crate) const FILE: &str = "coverage.html";
 const NEGLIGIBLE: f64 = 1e-6;
 const MODELS: [&str; 3] = ["A", "B", "C"];
 /// The partners that have a column of their own; all others are other programs.
-const PARTNERS: [&str; 3] = ["axisymmetric", "solid", CLOSED_FORM];
+const COMPARATORS: [&str; 3] = ["axisymmetric", "solid", CLOSED_FORM];
 
-/// The page of `coverage`; scenes with a page among those `standing` are linked.
-pub(crate) fn of(coverage: &Coverage, standing: &[Standing]) -> String {
-    let pages: Vec<&str> = standing.iter().map(|scene| &*scene.overview.scene).collect();
+/// The page of `coverage`; scenes with a page among those `existing` are linked.
+pub(crate) fn of(coverage: &Coverage, existing: &[ExistingScene]) -> String {
+    let pages: Vec<&str> = existing.iter().map(|scene| &*scene.overview.scene).collect();
     let body = html! {
         h1 { "Coverage" }
         p { a href="index.html" { "All scenes" } }
-        p { (told(coverage)) }
+        p { (description(coverage)) }
         (scrolled("Coverage", &table(coverage, &pages)))
         p.soft.note {
             "Models A, B and C: the largest relative difference to finite elements or another program in any scene with the feature, and the "
@@ -37,15 +37,15 @@ pub(crate) fn of(coverage: &Coverage, standing: &[Standing]) -> String {
 }
 
 /// How many features have a partner, and which have none.
-fn told(coverage: &Coverage) -> String {
-    let is_held = |feature: &&FeatureCoverage| feature.partners.iter().any(|p| p.partner.is_some());
-    let (held, alone): (Vec<_>, Vec<_>) = coverage.features.iter().partition(is_held);
+fn description(coverage: &Coverage) -> String {
+    let is_compared = |feature: &&FeatureCoverage| feature.partners.iter().any(|p| p.partner.is_some());
+    let (compared, alone): (Vec<_>, Vec<_>) = coverage.features.iter().partition(is_compared);
     let names: Vec<&str> = alone.iter().map(|feature| feature.feature).collect();
     let rest = match names.len() {
         0 => "every one is compared with something independent".to_owned(),
         _ => format!(
             "{} of them are compared with something independent; not: {}",
-            held.len(),
+            compared.len(),
             names.join(", ")
         ),
     };
@@ -58,7 +58,7 @@ fn table(coverage: &Coverage, pages: &[&str]) -> Markup {
             tr { td {} th.left scope="colgroup" colspan="3" { "reduced model" } th.left scope="colgroup" colspan="4" { "compared with" } }
             tr {
                 th.left scope="col" { "feature" }
-                @for heading in MODELS.iter().chain(&PARTNERS) { th.left scope="col" { (heading) } }
+                @for heading in MODELS.iter().chain(&COMPARATORS) { th.left scope="col" { (heading) } }
                 th.left scope="col" { "other program" }
             }
         }
@@ -67,21 +67,21 @@ fn table(coverage: &Coverage, pages: &[&str]) -> Markup {
             @if feature.partners.is_empty() { td.left.soft colspan="7" { "no scene has it" } }
             @else {
                 @for model in MODELS { td.left { (of_model(feature, model)) } }
-                @for partner in PARTNERS { td.left { (of_partner(&with(feature, |name| name == partner), pages)) } }
-                td.left { (of_partner(&with(feature, |name| !PARTNERS.contains(&name)), pages)) }
+                @for partner in COMPARATORS { td.left { (of_comparator(&with(feature, |name| name == partner), pages)) } }
+                td.left { (of_comparator(&with(feature, |name| !COMPARATORS.contains(&name)), pages)) }
             }
         } } }
     } }
 }
 
-/// The entries of a feature whose partner's name `is_wanted`.
-fn with(feature: &FeatureCoverage, is_wanted: impl Fn(&str) -> bool) -> Vec<&Partner> {
-    feature.partners.iter().filter(|p| p.partner.as_deref().is_some_and(&is_wanted)).collect()
+/// The entries of a feature whose partner's name `is_selected`.
+fn with(feature: &FeatureCoverage, is_selected: impl Fn(&str) -> bool) -> Vec<&FeatureComparison> {
+    feature.partners.iter().filter(|p| p.partner.as_deref().is_some_and(&is_selected)).collect()
 }
 
 /// The largest difference of a model to any partner that solves whole scenes.
 fn of_model(feature: &FeatureCoverage, model: &str) -> Markup {
-    let own: Vec<&Partner> = feature.partners.iter().filter(|p| p.model == model).collect();
+    let own: Vec<&FeatureComparison> = feature.partners.iter().filter(|p| p.model == model).collect();
     let whole = own.iter().filter(|p| p.partner.is_some() && p.partner.as_deref() != Some(CLOSED_FORM));
     let worst = whole
         .max_by(|a, b| a.worst_relative.partial_cmp(&b.worst_relative).unwrap_or(std::cmp::Ordering::Equal));
@@ -95,8 +95,8 @@ fn of_model(feature: &FeatureCoverage, model: &str) -> Markup {
 }
 
 /// The scenes of `entries`, all with one partner, and the difference of the model that comes nearest to it.
-fn of_partner(entries: &[&Partner], pages: &[&str]) -> Markup {
-    let size = |partner: &&&Partner| partner.worst_relative.unwrap_or(f64::INFINITY);
+fn of_comparator(entries: &[&FeatureComparison], pages: &[&str]) -> Markup {
+    let size = |partner: &&&FeatureComparison| partner.worst_relative.unwrap_or(f64::INFINITY);
     let Some(nearest) = entries.iter().min_by(|a, b| size(a).total_cmp(&size(b))) else {
         return html! { span.soft { "–" } };
     };
@@ -115,7 +115,7 @@ fn of_partner(entries: &[&Partner], pages: &[&str]) -> Markup {
 }
 
 /// The largest difference of an entry, with the partner's band and the quantity.
-fn difference(entry: &Partner) -> Markup {
+fn difference(entry: &FeatureComparison) -> Markup {
     let Some(relative) = entry.worst_relative else { return html! { "–" } };
     let quantity = entry.quantity.as_deref().map(words).unwrap_or_default();
     let is_exact = entry.partner.as_deref() == Some(CLOSED_FORM);
@@ -135,8 +135,8 @@ fn size(relative: f64) -> String {
 mod tests {
     use super::*;
 
-    fn entry(model: &str, partner: Option<&str>, worst: f64) -> Partner {
-        Partner {
+    fn entry(model: &str, partner: Option<&str>, worst: f64) -> FeatureComparison {
+        FeatureComparison {
             model: model.into(),
             partner: partner.map(str::to_owned),
             scenes: vec!["here".into(), "elsewhere".into()],
@@ -148,8 +148,8 @@ mod tests {
 
     /// Every cell says what there is, a feature without partner that it has none.
     #[test]
-    fn cells_have_the_largest_difference_of_a_model_and_the_nearest_model_of_a_partner() {
-        let held = FeatureCoverage {
+    fn cells_have_the_largest_difference_of_a_model_and_the_nearest_model_of_a_comparator() {
+        let compared = FeatureCoverage {
             feature: "gap",
             partners: vec![
                 entry("A", Some("axisymmetric"), 0.5),
@@ -159,25 +159,26 @@ mod tests {
                 entry("B", Some(CLOSED_FORM), 1e-9),
             ],
         };
-        let of_c = of_model(&held, "C").into_string();
+        let of_c = of_model(&compared, "C").into_string();
         assert!(
             of_c.contains("3.0 %") && of_c.contains("± 0.20 %") && of_c.contains("inner force, peak"),
             "{of_c}"
         );
-        assert!(of_model(&held, "B").into_string().contains("not compared"));
-        let axisymmetric = of_partner(&with(&held, |name| name == "axisymmetric"), &["here"]).into_string();
+        assert!(of_model(&compared, "B").into_string().contains("not compared"));
+        let axisymmetric =
+            of_comparator(&with(&compared, |name| name == "axisymmetric"), &["here"]).into_string();
         assert!(axisymmetric.starts_with("C: ") && axisymmetric.contains("2 scenes"), "{axisymmetric}");
         assert!(
             axisymmetric.contains("<a href=\"here.html\">here</a>")
                 && axisymmetric.contains("<li>elsewhere</li>")
         );
-        let exact = of_partner(&with(&held, |name| name == CLOSED_FORM), &[]).into_string();
+        let exact = of_comparator(&with(&compared, |name| name == CLOSED_FORM), &[]).into_string();
         assert!(exact.contains("&lt; 0.00010 %") && !exact.contains('±'), "{exact}");
         let alone = FeatureCoverage { feature: "drag", partners: vec![entry("B", None, 0.0)] };
         assert!(of_model(&alone, "A").into_string().contains("not for it"));
-        let coverage = Coverage { schema_version: 1, features: vec![held, alone] };
+        let coverage = Coverage { schema_version: 1, features: vec![compared, alone] };
         assert_eq!(
-            told(&coverage),
+            description(&coverage),
             "2 features that a scene can have; 1 of them are compared with something independent; not: drag."
         );
         let page = of(&coverage, &[]);

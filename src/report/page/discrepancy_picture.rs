@@ -22,8 +22,8 @@ pub(crate) fn discrepancy_picture(comparison: &SceneComparison) -> Markup {
     };
     let is_number =
         |row: &Discrepancy| first.summary.quantities.get(&row.quantity).is_some_and(|q| !q.is_count);
-    let names = |wanted: &dyn Fn(&Discrepancy) -> bool| -> Vec<&str> {
-        first.discrepancies.iter().filter(|row| wanted(row)).map(|row| &*row.quantity).collect()
+    let names = |is_selected: &dyn Fn(&Discrepancy) -> bool| -> Vec<&str> {
+        first.discrepancies.iter().filter(|row| is_selected(row)).map(|row| &*row.quantity).collect()
     };
     let (numbers, curves) = (names(&is_number), names(&|row| row.quantity.ends_with("_rms")));
     let shown = |row: &&Discrepancy| numbers.contains(&&*row.quantity) || row.quantity.ends_with("_max");
@@ -55,7 +55,7 @@ fn table(name: &str, quantities: &[&str], comparison: &SceneComparison, axis: &S
             } }
             tbody { @for quantity in quantities { tr data-quantity=(quantity) {
                 th scope="row" { (named(quantity.trim_end_matches("_rms"))) }
-                td { svg height=(height) width="100%" role="img" aria-label=(told(quantity, comparison)) {
+                td { svg height=(height) width="100%" role="img" aria-label=(description(quantity, comparison)) {
                     (row(quantity, comparison, axis, id))
                 } }
             } } }
@@ -163,7 +163,7 @@ fn label(tick: f64) -> String {
 }
 
 /// The row in words.
-fn told(quantity: &str, comparison: &SceneComparison) -> String {
+fn description(quantity: &str, comparison: &SceneComparison) -> String {
     let of_model = |model: &ModelComparison| {
         let relative = model.discrepancy(quantity).and_then(|row| row.relative);
         format!("{} {}", model.model, percent(relative))

@@ -101,8 +101,8 @@ fn cell(column: &SummaryColumn, summary: &Summary, reference: Option<&Summary>) 
     html! {
         td data-field=(column.quantity) data-off=[cell.off] {
             span.value { (cell.value) }
-            @if let Some((off, told)) = cell.off.zip(cell.off_in_words) {
-                " " span class=(format!("off {}", size_class(off))) { (told) }
+            @if let Some((off, in_words)) = cell.off.zip(cell.off_in_words) {
+                " " span class=(format!("off {}", size_class(off))) { (in_words) }
             }
         }
     }

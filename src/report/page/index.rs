@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::format::{percent, prefixed, significant, words};
 use crate::plot::colours::look;
 use crate::report::Report;
+use crate::report::existing::{self, ExistingScene, Folder};
 use crate::report::export::Export;
 use crate::report::figure::thumbnail;
 use crate::report::overview::{ModelOverview, Overview, RowOverview};
@@ -14,7 +15,6 @@ use crate::report::page::html::{
 };
 use crate::report::page::validated_map::ValidatedMap;
 use crate::report::run_times::marked;
-use crate::report::standing::{self, Folder, Standing};
 use crate::report::trust::size_class;
 use maud::{Markup, PreEscaped, html};
 
@@ -36,13 +36,13 @@ impl Export<Folder<'_>> for Index {
 
 /// The page with the verdict of every scene and model.
 pub fn index_page(report: &Report) -> String {
-    index_of(report, &standing::of_run(report))
+    index_of(report, &existing::of_run(report))
 }
 
 /// The index of all scenes whose results stand in a folder.
-pub(crate) fn index_of(report: &Report, scenes: &[Standing]) -> String {
+pub(crate) fn index_of(report: &Report, scenes: &[ExistingScene]) -> String {
     let body = html! {
-        h1 { "impactcheck " (badge(standing::verdict(scenes))) }
+        h1 { "impactcheck " (badge(existing::verdict(scenes))) }
         p.soft { "Reduced models of an impact against explicit finite elements. " (counts(scenes)) }
         @if let Some(map) = ValidatedMap::of(report.validated(), None) {
             details { summary { "Where models were compared with references" } (map.html()) }
@@ -65,7 +65,7 @@ pub(crate) fn index_of(report: &Report, scenes: &[Standing]) -> String {
 }
 
 /// How much was gated and what came of it, in a sentence.
-fn counts(scenes: &[Standing]) -> String {
+fn counts(scenes: &[ExistingScene]) -> String {
     let models = scenes.iter().flat_map(|scene| &scene.overview.models);
     let verdicts: Vec<Verdict> = models.flat_map(|model| model.gated.iter().copied()).collect();
     if verdicts.is_empty() {
@@ -95,7 +95,7 @@ const HEADINGS: [(&str, bool); 8] = [
 ];
 
 /// The folders in the order in which the scenes name them.
-fn folders(scenes: &[Standing]) -> Vec<&str> {
+fn folders(scenes: &[ExistingScene]) -> Vec<&str> {
     let mut folders: Vec<&str> = Vec::new();
     for scene in scenes {
         if !folders.contains(&&*scene.overview.folder) {
@@ -105,12 +105,12 @@ fn folders(scenes: &[Standing]) -> Vec<&str> {
     folders
 }
 
-fn of_folder<'s>(scenes: &'s [Standing], folder: &str) -> impl Iterator<Item = &'s Standing> {
+fn of_folder<'s>(scenes: &'s [ExistingScene], folder: &str) -> impl Iterator<Item = &'s ExistingScene> {
     scenes.iter().filter(move |scene| scene.overview.folder == folder)
 }
 
 /// Links to the folders, with the worst verdict in each.
-fn contents(scenes: &[Standing]) -> Markup {
+fn contents(scenes: &[ExistingScene]) -> Markup {
     let folders = folders(scenes);
     html! {
         @if folders.len() > 1 {
@@ -126,7 +126,7 @@ fn title(folder: &str) -> &str {
     if folder.is_empty() { "–" } else { folder }
 }
 
-fn table(scenes: &[Standing]) -> Markup {
+fn table(scenes: &[ExistingScene]) -> Markup {
     let folders = folders(scenes);
     html! { table.verdicts {
         thead { tr {
@@ -143,7 +143,7 @@ fn table(scenes: &[Standing]) -> Markup {
     } }
 }
 
-fn scene_rows(scene: &Standing) -> Markup {
+fn scene_rows(scene: &ExistingScene) -> Markup {
     let overview = &scene.overview;
     html! {
         @if !overview.conclusion.is_empty() {
@@ -164,7 +164,7 @@ fn link(overview: &Overview) -> Markup {
 }
 
 /// A row; cells sort by `data-sort` where it is not their text that counts.
-fn row(scene: &Standing, model: &ModelOverview) -> Markup {
+fn row(scene: &ExistingScene, model: &ModelOverview) -> Markup {
     let overview = &scene.overview;
     let [own, _] = model.efficiency;
     let severity = [Verdict::NotGated, Verdict::Pass, Verdict::Undecided, Verdict::Fail];

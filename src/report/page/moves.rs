@@ -22,10 +22,10 @@ pub fn moves_page(names: [&str; 2], moves: &Moves, above: f64) -> String {
     rows.sort_by(|a, b| size(b).total_cmp(&size(a)));
     // what is small by itself moves by much and means little
     let (distances, rows): (Vec<&Moved>, Vec<&Moved>) = rows.into_iter().partition(|row| is_distance(row));
-    let title = format!("{} of {} and {}", told(moves), names[0], names[1]);
+    let title = format!("{} of {} and {}", in_words(moves), names[0], names[1]);
     let body = html! {
         h1 { "What changed" }
-        p { "A: " code { (names[0]) } ", B: " code { (names[1]) } ". " (told(moves)) "." }
+        p { "A: " code { (names[0]) } ", B: " code { (names[1]) } ". " (in_words(moves)) "." }
         @if above > 0.0 { p.soft { "Moves of up to " (percent(Some(above)).trim_start_matches('+')) " are omitted." } }
         @if !moves.verdicts.is_empty() { h2 { "Verdicts" } (scrolled("Verdicts", &verdicts(&moves.verdicts))) }
         @if !rows.is_empty() {
@@ -50,7 +50,7 @@ pub fn moves_page(names: [&str; 2], moves: &Moves, above: f64) -> String {
 }
 
 /// How much moved, in a sentence.
-fn told(moves: &Moves) -> String {
+fn in_words(moves: &Moves) -> String {
     let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
     match (moves.moved.len(), moves.verdicts.len()) {
         (0, 0) => "Nothing changed".into(),
@@ -79,10 +79,10 @@ fn is_distance(row: &Moved) -> bool {
 
 /// The first of `rows` in a table of its own `class`, which its grid is called by.
 fn numbers(class: &str, rows: &[&Moved]) -> Markup {
-    let (shown, left_out) = rows.split_at(rows.len().min(SHOWN));
+    let (shown, omitted) = rows.split_at(rows.len().min(SHOWN));
     html! {
         (scrolled("Numbers", &table(class, shown)))
-        @if !left_out.is_empty() { p.soft.note { (left_out.len()) " smaller moves are not shown: " code { "--json" } " has them." } }
+        @if !omitted.is_empty() { p.soft.note { (omitted.len()) " smaller moves are not shown: " code { "--json" } " has them." } }
     }
 }
 

@@ -88,7 +88,7 @@ fn curves(report: &SceneReport) -> Markup {
     html! {
         (interactive::panels(figure(report, Theme::Inline)))
         p.soft {
-            (kinds::of(report.scene).curves_told()) " Shaded: the uncertainty (95 %) of the reference. "
+            (kinds::of(report.scene).curves_caption()) " Shaded: the uncertainty (95 %) of the reference. "
             a href=(format!("{scene}.svg")) { "SVG" } " · "
             a href=(format!("{scene}.png")) { "PNG" } " · "
             a href=(format!("{scene}.csv")) { "curves as CSV" }

@@ -45,8 +45,8 @@ impl<'a> ValidatedMap<'a> {
             div.map { @for (model, measure) in views() { (self.view(model, measure, None)) } }
             p.soft.note {
                 "Every mark is a scene in which the model was compared with a reference: it differs in efficiency and peak forces by "
-                @for (shape, size, told) in [(2, "small", "up to 1 %, "), (1, "medium", "up to 5 %, "), (0, "large", "more. ")] {
-                    svg.key viewBox="-6 -6 12 12" aria-hidden="true" { (mark(shape, &format!("size-{size}"))) } " " (told)
+                @for (shape, size, label) in [(2, "small", "up to 1 %, "), (1, "medium", "up to 5 %, "), (0, "large", "more. ")] {
+                    svg.key viewBox="-6 -6 12 12" aria-hidden="true" { (mark(shape, &format!("size-{size}"))) } " " (label)
                 }
                 @if self.here.is_some() { "Ring: this scene; dashed: within a factor of " (NEAR) " of it. " }
                 "Patch: the larger contact patch's radius at the force peak; contact: end of the outer contact; period: the plate's first; "
@@ -81,7 +81,7 @@ impl<'a> ValidatedMap<'a> {
         let measures = |place: &Place| (place.measures()[0], place.measures()[measure]);
         let (x_marks, y_marks) = (plot.x.marks(MARKS), plot.y.marks(MARKS));
         let own = self.placed.iter().filter(|(v, _)| v.model == model);
-        let told = format!(
+        let description = format!(
             "Model {model}: {} over {} of {} scenes",
             MEASURES[measure],
             MEASURES[0],
@@ -89,10 +89,10 @@ impl<'a> ValidatedMap<'a> {
         );
         html! {
             svg viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) x=[at.map(|at| at.0)] y=[at.map(|at| at.1)] width=[at.map(|_| WIDTH)]
-                height=[at.map(|_| HEIGHT)] font-size=(FONT_SIZE) role="img" aria-label=(told) {
+                height=[at.map(|_| HEIGHT)] font-size=(FONT_SIZE) role="img" aria-label=(description) {
                 (plot.grid(&x_marks, &y_marks))
                 (plot.below(&x_marks, MEASURES[0]))
-                (plot.beside(&y_marks, ""))
+                (plot.left_labels(&y_marks, ""))
                 (plot.outline())
                 text x=(LEFT) y="17" { tspan font-weight="600" { (model) } ": " (MEASURES[measure]) }
                 @if let Some(here) = &self.here {

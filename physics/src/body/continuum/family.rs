@@ -253,7 +253,7 @@ mod tests {
     /// Modes of one parity avoid each other within the range: of thick plates, and of others if there are many of them. That is told
     /// by one plate: where it is, the polynomials do fail, and the largest number that a range is known to bear is not refused.
     #[test]
-    fn a_range_in_which_modes_avoid_each_other_is_told() {
+    fn a_range_in_which_modes_avoid_each_other_is_an_error() {
         let ratio = [0.3; 2];
         for (edge, range, modes) in [
             (Edge::Free, [0.6, 1.1], 12),

@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_shorter_than_the_wanted_size_is_one_element() {
+    fn a_line_shorter_than_the_element_size_is_one_element() {
         let grading = Grading { start: 3.0, end: 3.0, largest: 3.0, growth: 1.2 };
         assert_eq!(grading.breakpoints(1.0), vec![0.0, 1.0]);
     }

@@ -39,7 +39,7 @@ pub(in crate::body) struct Modes {
 /// Bound on the residual of K^-1 M v = theta v relative to theta; the error of the frequency is its square.
 const RESIDUAL: f64 = 1e-6;
 
-/// The lowest elastic modes: as many as `wanted`, or fewer if one beyond `omega_limit` is found.
+/// The lowest elastic modes: as many as `requested`, or fewer if one beyond `omega_limit` is found.
 ///
 /// The last mode returned is then the first beyond the limit.
 ///
@@ -47,15 +47,15 @@ const RESIDUAL: f64 = 1e-6;
 /// [`Error::Solver`] if the mesh has not enough modes or the iteration does not converge.
 pub(in crate::body) fn lowest_modes(
     body: &impl ShiftInvert,
-    wanted: usize,
+    requested: usize,
     omega_limit: f64,
 ) -> Result<Modes> {
-    if wanted == 0 {
+    if requested == 0 {
         return Ok(Modes::default());
     }
-    if 2 * wanted > body.elastic_size() {
+    if 2 * requested > body.elastic_size() {
         return Err(Error::Solver(format!(
-            "{wanted} modes are requested of a continuum mesh with {} degrees of freedom; it has at most half as many",
+            "{requested} modes are requested of a continuum mesh with {} degrees of freedom; it has at most half as many",
             body.elastic_size()
         )));
     }
@@ -67,8 +67,8 @@ pub(in crate::body) fn lowest_modes(
     let mut next_mass = body.mass_times(&next);
     let mut previous = Vec::new();
     // with a limit a few modes may be enough
-    let mut next_check = if omega_limit.is_finite() { wanted.min(8) } else { wanted };
-    let longest = body.elastic_size().min(4 * wanted + 200);
+    let mut next_check = if omega_limit.is_finite() { requested.min(8) } else { requested };
+    let longest = body.elastic_size().min(4 * requested + 200);
     loop {
         let norm = dot(&next, &next_mass).sqrt();
         scale(1.0 / norm, &mut next);
@@ -95,15 +95,15 @@ pub(in crate::body) fn lowest_modes(
                 .take_while(|(k, t)| residual * vectors[(steps - 1, steps - 1 - k)].abs() <= RESIDUAL * **t)
                 .count();
             let beyond = theta[..converged].iter().position(|t| 1.0 / t.sqrt() > omega_limit);
-            if converged >= wanted || beyond.is_some() {
-                let count = beyond.map_or(wanted, |k| (k + 1).min(wanted));
+            if converged >= requested || beyond.is_some() {
+                let count = beyond.map_or(requested, |k| (k + 1).min(requested));
                 return Ok(ritz(&basis, &theta[..count], &vectors));
             }
             next_check = steps + (steps / 8).max(4);
         }
         if steps == longest {
             return Err(Error::Solver(format!(
-                "the {wanted} lowest modes of the continuum mesh did not converge in {steps} Lanczos steps"
+                "the {requested} lowest modes of the continuum mesh did not converge in {steps} Lanczos steps"
             )));
         }
         if residual > f64::EPSILON * alpha[0].abs() {
@@ -245,8 +245,8 @@ mod tests {
         for (parity, free) in
             [(Parity::Bending, true), (Parity::Bending, false), (Parity::Longitudinal, false)]
         {
-            let held = |[r, _]: [f64; 2]| [!free && r == 1.0; 2];
-            let body = HalfBody::new(&plate, &matrices, parity, held, free).unwrap();
+            let fixed = |[r, _]: [f64; 2]| [!free && r == 1.0; 2];
+            let body = HalfBody::new(&plate, &matrices, parity, fixed, free).unwrap();
             let modes = lowest_modes(&body, 15, f64::INFINITY).unwrap();
             for (found, expected) in modes.omega.iter().zip(dense(&body)) {
                 assert_relative_eq!(*found, expected, max_relative = 1e-9);

@@ -236,13 +236,13 @@ pub(super) struct SpectrumEntry {
 impl Halves {
     pub(super) fn new(plate: &Plate, mesh: &Mesh) -> Result<Self> {
         let matrices = Rc::new(Matrices::new(mesh, &plate.material)?);
-        let held = match plate.edge {
+        let fixed = match plate.edge {
             Edge::Clamped => [true, true],
             Edge::SimplySupported => [false, true],
             Edge::Free => [false, false],
         };
         let support = |[r, _]: [f64; 2]| {
-            if r == mesh.radius { held } else { [false, false] }
+            if r == mesh.radius { fixed } else { [false, false] }
         };
         let half = |parity| HalfBody::new(mesh, &matrices, parity, support, plate.edge == Edge::Free);
         Ok(Self { bending: half(Parity::Bending)?, longitudinal: half(Parity::Longitudinal)? })

@@ -3,7 +3,7 @@
 use super::family::{NODES, PlateFamily, SphereFamily};
 use super::plate::ContinuumPlate;
 use super::unit::{MeshedPlate, UnitSphere};
-use crate::body::kept::Kept;
+use crate::body::memo::MemoList;
 use crate::error::Result;
 use crate::scene::{Edge, Material, Plate};
 use std::sync::OnceLock;
@@ -72,10 +72,10 @@ struct LazyPlateFamily {
 #[derive(Debug, Default)]
 pub struct UnitBodies {
     varied: Varied,
-    plates: Kept<MeshedPlate>,
-    spheres: Kept<UnitSphere>,
-    families: Kept<LazyPlateFamily>,
-    sphere_families: Kept<([f64; 2], SphereFamily)>,
+    plates: MemoList<MeshedPlate>,
+    spheres: MemoList<UnitSphere>,
+    families: MemoList<LazyPlateFamily>,
+    sphere_families: MemoList<([f64; 2], SphereFamily)>,
 }
 
 impl UnitBodies {

@@ -101,11 +101,11 @@ impl MeshedPlate {
         let nodes = 0..self.patches.nodes.len();
         for (i, j) in nodes.clone().flat_map(|i| nodes.clone().map(move |j| (i, j))) {
             let term = |k: usize| self.shapes[i][k] * self.shapes[j][k] / self.omega[k].powi(2);
-            let yielded: f64 = self.apart().map(term).sum();
+            let compliance: f64 = self.apart().map(term).sum();
             for (own, mutual) in self.own.iter_mut().zip(&mut self.mutual) {
-                mutual[i][j] -= yielded;
+                mutual[i][j] -= compliance;
                 if i == j {
-                    own[i] -= yielded;
+                    own[i] -= compliance;
                 }
             }
         }

@@ -302,27 +302,27 @@ mod tests {
     }
 
     #[test]
-    fn unusable_meshes_are_told_apart() {
+    fn unusable_meshes_have_different_messages() {
         let good = boxes([1.0; 3], [1, 1, 1], 2, |p| p);
-        let told = |points: Vec<Vector3<f64>>, cells: Vec<usize>, order| {
+        let message = |points: Vec<Vector3<f64>>, cells: Vec<usize>, order| {
             TetMesh::new(points, cells, order).expect_err("unusable")
         };
         let mut inverted = good.cells.clone();
         inverted.swap(0, 1);
-        assert!(told(good.points.clone(), inverted, 2).contains("turned inside out"));
+        assert!(message(good.points.clone(), inverted, 2).contains("turned inside out"));
         let mut curved = good.points.clone();
         curved[good.cells[4]][0] += 0.01;
-        let said = told(curved, good.cells.clone(), 2);
+        let said = message(curved, good.cells.clone(), 2);
         assert!(said.contains("straight") || said.contains("inside out"), "{said}");
         let mut missing = good.cells.clone();
         missing[0] = 99;
-        assert!(told(good.points.clone(), missing, 2).contains("names node 99"));
+        assert!(message(good.points.clone(), missing, 2).contains("names node 99"));
         let mut more = good.points.clone();
         more.push(Vector3::zeros());
-        assert!(told(more, good.cells.clone(), 2).contains("belongs to no cell"));
-        assert!(told(good.points.clone(), good.cells[..9].to_vec(), 2).contains("no tetrahedra"));
+        assert!(message(more, good.cells.clone(), 2).contains("belongs to no cell"));
+        assert!(message(good.points.clone(), good.cells[..9].to_vec(), 2).contains("no tetrahedra"));
         let mut lost = good.points.clone();
         lost[0][1] = f64::NAN;
-        assert!(told(lost, good.cells.clone(), 2).contains("not finite"));
+        assert!(message(lost, good.cells.clone(), 2).contains("not finite"));
     }
 }

@@ -54,15 +54,20 @@ impl Solid {
     ///
     /// # Errors
     /// [`Error::Solver`] if the supports leave a rigid motion or the material is too nearly incompressible.
-    pub fn new(mesh: &TetMesh, material: &Material, held: &[[bool; 3]], interface: &[usize]) -> Result<Self> {
+    pub fn new(
+        mesh: &TetMesh,
+        material: &Material,
+        fixed: &[[bool; 3]],
+        interface: &[usize],
+    ) -> Result<Self> {
         let matrices = SolidMatrices::new(mesh, material);
         let mut size = 0;
-        let dof: Vec<[usize; 3]> = held
+        let dof: Vec<[usize; 3]> = fixed
             .iter()
-            .map(|held| {
-                held.map(|held| {
-                    size += usize::from(!held);
-                    if held { FIXED } else { size - 1 }
+            .map(|fixed| {
+                fixed.map(|fixed| {
+                    size += usize::from(!fixed);
+                    if fixed { FIXED } else { size - 1 }
                 })
             })
             .collect();
@@ -154,10 +159,10 @@ impl InterfaceBody {
         let mut packed = self.flexibility.iter();
         for i in 0..n {
             for j in 0..=i {
-                let kept: f64 = (0..modes)
+                let memo: f64 = (0..modes)
                     .map(|k| self.participation[k][i] * self.participation[k][j] / self.omega[k].powi(2))
                     .sum();
-                let rest = packed.next().copied().unwrap_or(0.0) - kept;
+                let rest = packed.next().copied().unwrap_or(0.0) - memo;
                 full[i * n + j] = rest;
                 full[j * n + i] = rest;
             }
@@ -176,9 +181,9 @@ mod tests {
     fn bar_error(fine: usize, order: usize) -> f64 {
         let material = Material::elastic("m", 8.0, 0.0, 2.0);
         let mesh = mesh::boxes([1.0, 0.25, 0.25], [4 * fine, fine, fine], order, |p| p);
-        let held: Vec<[bool; 3]> = mesh.points.iter().map(|p| [p[0] == 0.0, true, true]).collect();
+        let fixed: Vec<[bool; 3]> = mesh.points.iter().map(|p| [p[0] == 0.0, true, true]).collect();
         let end: Vec<usize> = (0..mesh.points.len()).filter(|&n| mesh.points[n][0] == 1.0).collect();
-        let solid = Solid::new(&mesh, &material, &held, &end).expect("solid");
+        let solid = Solid::new(&mesh, &material, &fixed, &end).expect("solid");
         let body = solid.at_interface(2).expect("modes");
         // omega = pi/2 sqrt(E/rho)/L
         body.omega[0] / (0.5 * PI * 2.0) - 1.0
@@ -200,18 +205,18 @@ mod tests {
     fn all_modes_together_leave_no_residual() {
         let material = Material::elastic("m", 1.0, 0.3, 1.0);
         let mesh = mesh::boxes([1.0, 0.7, 0.4], [4, 3, 2], 1, |p| p);
-        let held: Vec<[bool; 3]> = mesh.points.iter().map(|p| [p[0] == 0.0; 3]).collect();
+        let fixed: Vec<[bool; 3]> = mesh.points.iter().map(|p| [p[0] == 0.0; 3]).collect();
         let interface = [59, 58, 30, 2];
-        let solid = Solid::new(&mesh, &material, &held, &interface).expect("solid");
+        let solid = Solid::new(&mesh, &material, &fixed, &interface).expect("solid");
         let body = solid.at_interface(solid.size() / 2).expect("modes");
         let trace = |modes| (0..12).map(|i| body.residual(modes).expect("residual")[13 * i]).sum::<f64>();
         // each mode takes some of it away, and what is left stays positive: no mode is counted twice
         let traces: Vec<f64> = [0, 1, 5, 20, body.omega.len()].map(trace).to_vec();
         assert!(traces.windows(2).all(|w| w[1] < w[0]) && traces[4] > 0.0, "{traces:?}");
         assert!(traces[4] < 0.2 * traces[0], "{traces:?}");
-        let held_node = body.residual(0).expect("residual");
+        let fixed_node = body.residual(0).expect("residual");
         let last = 12 * 9 + 9;
-        assert_eq!(held_node[last], 0.0, "node 2 is held: it does not yield");
+        assert_eq!(fixed_node[last], 0.0, "node 2 is held: it does not yield");
         assert!(body.residual(body.omega.len() + 1).is_err());
     }
 }

@@ -38,9 +38,9 @@ impl TetMesh {
             for (node, surfaces) in surfaces.iter().enumerate() {
                 for surface in *surfaces {
                     let (distance, normal) = surface.distance(displaced[node]);
-                    let wanted = normal.dot(&(displaced[node] - body.points[node])) - distance;
+                    let missing = normal.dot(&(displaced[node] - body.points[node])) - distance;
                     pulled.stiffen(node, pull * normal * normal.transpose());
-                    (0..3).for_each(|c| load[3 * node + c] += pull * wanted * normal[c]);
+                    (0..3).for_each(|c| load[3 * node + c] += pull * missing * normal[c]);
                 }
             }
             let numbers: Vec<[usize; 3]> =
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn a_shape_too_far_away_is_refused() {
         let mesh = boxes([1.0; 3], [3, 3, 3], 1, |p| p);
-        let told = mesh.moved_onto(&planes(&mesh, [1.0, 1.0, 0.01], 0.0)).unwrap_err().to_string();
-        assert!(told.contains("can't follow"), "{told}");
+        let message = mesh.moved_onto(&planes(&mesh, [1.0, 1.0, 0.01], 0.0)).unwrap_err().to_string();
+        assert!(message.contains("can't follow"), "{message}");
     }
 }

@@ -97,7 +97,7 @@ fn loading_is_hertz_s_law_and_then_softer() {
 
 /// Beside the depth of a dent the first touch after it is below the rounding of the approach; the force begins as a power all the same.
 #[test]
-fn a_dent_is_touched_gently() {
+fn an_indentation_is_contacted_gently() {
     let mut contact = pair(0.01, [1.0; 2], [None, Some(1e8)]);
     contact.advance(300.0 * contact.critical_approach());
     contact.advance(0.0);

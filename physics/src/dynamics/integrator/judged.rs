@@ -1,7 +1,7 @@
 //! What a solved step is wrong by, and where it should have ended.
 
 use super::DryStepper;
-use crate::dynamics::clearance::touch_between;
+use crate::dynamics::clearance::contact_between;
 use crate::dynamics::collocation::{Collocation, POINTS, Points, crossing};
 use crate::dynamics::contact_forces::Course;
 use crate::dynamics::step_bounds::{StepBounds, force_scale, peak_share};
@@ -56,13 +56,13 @@ impl DryStepper<'_> {
                 judged.force_defect[i] = force;
             }
             if is_open(trial, i)
-                && let Some(touch) = touch_between(collocation, &trial.local_approach[i])
+                && let Some(contact) = contact_between(collocation, &trial.local_approach[i])
             {
-                let impulse = self.solver.system.laws[i].force(touch.depth) * h;
+                let impulse = self.solver.system.laws[i].force(contact.depth) * h;
                 let missed = impulse / (scale[i] * self.bounds.kinked);
                 judged.excess = judged.excess.max(missed);
-                if missed > 1.0 && EVENTS.contains(&touch.place) {
-                    judged.event_at(touch.place);
+                if missed > 1.0 && EVENTS.contains(&contact.place) {
+                    judged.event_at(contact.place);
                 }
             }
         }

@@ -164,7 +164,7 @@ mod tests {
 
     /// Under forces that grow evenly, those on both faces against each other, it is that of the modes until waves come back from the edge.
     #[test]
-    fn soon_after_the_touch_the_moment_is_that_of_the_plate_s_modes() {
+    fn soon_after_contact_the_moment_is_that_of_the_plate_s_modes() {
         let plate = plate(Edge::Clamped);
         let mass = plate.thickness * plate.material.density;
         let unit = RADIUS.powi(2) * (mass / rigidity(210e9, 0.3, plate.thickness)).sqrt();

@@ -99,9 +99,9 @@ impl Contact {
     }
 
     /// Approach in m up to which there is no force at the end of the step.
-    pub(super) fn touch(&self) -> f64 {
+    pub(super) fn contact_approach(&self) -> f64 {
         match self {
-            Contact::Viscoelastic(contact) => contact.touch(),
+            Contact::Viscoelastic(contact) => contact.contact_approach(),
             _ => self.depth(),
         }
     }

@@ -18,8 +18,8 @@ pub(crate) use self::modes::ModeFlow;
 use self::contact::Contact;
 use self::step_force::StepForce;
 use self::stepper::MemoryStepper;
-use super::assured::differences;
 use super::driver;
+use super::error_control::differences;
 use super::integration::{Converged, Integration, Options};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
@@ -42,7 +42,7 @@ pub const CHANGE: f64 = 1e-4;
 /// in order.
 const MOST_ROUNDS: usize = 24;
 const STRAIGHT: usize = 3;
-const SETTLED: f64 = 1e-5;
+const CONVERGED: f64 = 1e-5;
 /// Representative plastic strain under a sphere over the contact radius over its own (Tabor, The Hardness of Metals, 1951).
 const TABOR: f64 = 0.2;
 
@@ -143,10 +143,8 @@ impl Memory {
         let hits = [0, 1].map(|i| hit(system, i));
         let contact = |i: usize| contact([bodies[i], plate], system.laws[i], &hits[i]);
         let contacts = [contact(0)?, contact(1)?];
-        let mut warnings: Vec<String> = materials
-            .into_iter()
-            .filter_map(|material| hardening_left_out(material, system, &hits))
-            .collect();
+        let mut warnings: Vec<String> =
+            materials.into_iter().filter_map(|material| hardening_omitted(material, system, &hits)).collect();
         warnings.sort();
         warnings.dedup();
         warnings.extend(overloaded(&contacts, &hits)?);
@@ -269,7 +267,7 @@ fn contact(pair: [&Material; 2], hertz: Hertz, hit: &HertzImpact) -> Result<Cont
 }
 
 /// A sentence if `material` hardens under contacts as hard as `hits` by more than the law without hardening can leave out.
-fn hardening_left_out(material: &Material, system: &System, hits: &[HertzImpact; 2]) -> Option<String> {
+fn hardening_omitted(material: &Material, system: &System, hits: &[HertzImpact; 2]) -> Option<String> {
     let plasticity = material.plasticity()?;
     let radius = |i: usize| (hits[i].approach_peak() / system.laws[i].tip_radius).sqrt();
     let strain = TABOR * radius(0).max(radius(1));
@@ -290,15 +288,15 @@ fn hardening_left_out(material: &Material, system: &System, hits: &[HertzImpact;
 fn overloaded(contacts: &[Contact; 2], hits: &[HertzImpact; 2]) -> Result<Option<String>> {
     let overload = |i: usize| contacts[i].overload(hits[i].approach_peak());
     let overload = overload(0).max(overload(1));
-    let told = format!(
+    let warning = format!(
         "a contact reaches about {overload:.0} times the approach at first yield; the law of plastic contacts was compared with finite elements up to {PROVEN_OVERLOAD} times"
     );
     if overload > MOST_OVERLOAD {
         return Err(Error::Solver(format!(
-            "reduced model: {told}, and it is refused beyond {MOST_OVERLOAD:.0}; is `yield_strength` in the right unit?"
+            "reduced model: {warning}, and it is refused beyond {MOST_OVERLOAD:.0}; is `yield_strength` in the right unit?"
         )));
     }
-    Ok((overload > PROVEN_OVERLOAD).then_some(told))
+    Ok((overload > PROVEN_OVERLOAD).then_some(warning))
 }
 
 /// Yield strength in Pa at the rate of plastic `strain` in 1/s, if the material yields.
@@ -365,7 +363,7 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
         let ran = run(0, stress, Some(peaks_of(&before)))?;
         unsettled = change(&before, &ran);
         before = ran;
-        if unsettled <= SETTLED {
+        if unsettled <= CONVERGED {
             unsettled = 0.0;
             break;
         }

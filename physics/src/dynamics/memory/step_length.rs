@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// Bend of a force within a step over that of Hertz's at the shortest length: below which so many steps in a row are followed by longer
 /// ones, and above which a step is too long.
 const EVEN: (f64, u32) = (0.02, 32);
-const ROUGH: f64 = 0.5;
+const LOW_ACCURACY: f64 = 0.5;
 /// Most doublings.
 const LONGEST: usize = 40;
 
@@ -65,7 +65,7 @@ impl StepLength {
             of(0).max(of(1))
         };
         let bend = self.rate.filter(|_| start != [0.0; 2]).map_or(f64::INFINITY, bend);
-        if bend > ROUGH && self.shorten() {
+        if bend > LOW_ACCURACY && self.shorten() {
             return false;
         }
         let (even, enough) = EVEN;

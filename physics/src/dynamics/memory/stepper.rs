@@ -8,7 +8,7 @@ use super::modes::ModeSet;
 use super::step_force::{StepForce, mean};
 use super::step_length::StepLength;
 use super::{CHANGE, CreepingContacts, Ran};
-use crate::dynamics::contact_ledger::ContactLedger;
+use crate::dynamics::contact_balance::ContactBalance;
 use crate::dynamics::driver::{Stepper, StopReason};
 use crate::dynamics::integration::{FluidAccount, Integration, NEGLIGIBLE, Options, unexplained_momentum};
 use crate::dynamics::recorder::{CURVES, sample};
@@ -58,9 +58,9 @@ pub(super) struct MemoryStepper<'a> {
     y: [f64; 2],
     force: [f64; 2],
     patch: [f64; 2],
-    contacts: [ContactLedger; 2],
+    contacts: [ContactBalance; 2],
     /// What plate and tips have yielded at each contact for having crept, m. Shape (contact; plate, tip).
-    crept: [[f64; 2]; 2],
+    viscoelastic: [[f64; 2]; 2],
     /// Energy lost in each contact, J.
     contact_losses: [f64; 2],
     /// What their laws had taken and dissipated at the start, and have taken now with what is stored beyond half-spaces, J.
@@ -69,7 +69,7 @@ pub(super) struct MemoryStepper<'a> {
     taken: [f64; 2],
     energy: f64,
     /// Energy lost beneath the contacts by creep of plate and tips, and by the modes, J; the power that the modes lose, W.
-    creep_losses: [[f64; 2]; 2],
+    viscoelastic_losses: [[f64; 2]; 2],
     modal_loss: f64,
     power: f64,
     /// What the contacts add to the displacement of the plate's centre, m.
@@ -119,14 +119,14 @@ impl<'a> MemoryStepper<'a> {
             y,
             force: [0.0; 2],
             patch: [0.0; 2],
-            contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
-            crept: Default::default(),
+            contacts: [ContactBalance::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
+            viscoelastic: Default::default(),
             contact_losses: [0.0; 2],
             taken_before: taken,
             dissipated_before: [0, 1].map(|i| bodies.contacts[i].dissipated()),
             taken,
             energy: taken[0] + taken[1],
-            creep_losses: Default::default(),
+            viscoelastic_losses: Default::default(),
             modal_loss: 0.0,
             power: 0.0,
             centre: 0.0,
@@ -152,10 +152,11 @@ impl<'a> MemoryStepper<'a> {
         let open = if self.steps > PATIENCE { self.certainly_open() } else { 0.0 };
         let recovering = self.loaded.map_or(f64::INFINITY, |loaded| GRADED * (self.time - loaded));
         let since = self.time - self.loaded.unwrap_or(0.0);
-        let kept = self.sample_interval.max(since / self.samples_per_fold);
-        let kept = self.history.as_ref().map_or(f64::INFINITY, |_| kept);
+        let sampling = self.sample_interval.max(since / self.samples_per_fold);
+        let sampling = self.history.as_ref().map_or(f64::INFINITY, |_| sampling);
         let end = self.end_time - self.time;
-        let steps = outer.min(inner).max(open).min(recovering).min(kept).min(end) / self.h * (1.0 + ROUNDING);
+        let steps =
+            outer.min(inner).max(open).min(recovering).min(sampling).min(end) / self.h * (1.0 + ROUNDING);
         if steps < 2.0 { 0 } else { (steps.log2() as usize).min(MAX_DOUBLINGS) }
     }
 
@@ -171,11 +172,12 @@ impl<'a> MemoryStepper<'a> {
         self.bodies.prepare(time);
         self.y = self.system.modal_approach(&self.modes[0].motion(next)[0]);
         for i in 0..2 {
-            let beneath = |part| self.bodies.creep(i, part).deformation(&self.deformed[i][part], 0.0);
-            self.x[i] = self.y[i] + self.offset[i] - beneath(0) - beneath(1);
+            let elastic_below = |part| self.bodies.creep(i, part).deformation(&self.deformed[i][part], 0.0);
+            self.x[i] = self.y[i] + self.offset[i] - elastic_below(0) - elastic_below(1);
         }
         self.remember(self.x, [0.0; 2], self.patch);
-        self.past = [0, 1].map(|i| (self.x[i] - self.bodies.contacts[i].touch()).min(-f64::MIN_POSITIVE));
+        self.past =
+            [0, 1].map(|i| (self.x[i] - self.bodies.contacts[i].contact_approach()).min(-f64::MIN_POSITIVE));
         self.step_length.reset();
         self.level = 0;
         self.bodies.prepare(self.h);
@@ -261,12 +263,12 @@ impl<'a> MemoryStepper<'a> {
         let mean = mean(self.step_force.felt([self.force, force], acting));
         for i in 0..2 {
             // touch and release are where the force begins and ends
-            let past = x[i] - self.bodies.contacts[i].touch();
+            let past = x[i] - self.bodies.contacts[i].contact_approach();
             let past =
                 if force[i] > 0.0 { past.max(f64::MIN_POSITIVE) } else { past.min(-f64::MIN_POSITIVE) };
             let forces = [mean[i], force[i]];
             let work = mean[i] * (y[i] - self.y[i]);
-            self.contacts[i].book_even((self.time, h), forces, [self.past[i], past], work);
+            self.contacts[i].add_even((self.time, h), forces, [self.past[i], past], work);
             self.past[i] = past;
             self.contact_losses[i] += match self.step_force {
                 StepForce::Conserving | StepForce::Mean => taken[i] - self.taken[i],
@@ -283,10 +285,10 @@ impl<'a> MemoryStepper<'a> {
             for part in 0..2 {
                 let state = &mut self.deformed[i][part];
                 self.bodies.creep(i, part).advance(state, elastic[i][part]);
-                let crept = state.depth() - elastic[i][part];
+                let viscoelastic = state.depth() - elastic[i][part];
                 let mean = 0.5 * (self.force[i] + force[i]);
-                self.creep_losses[i][part] += mean * (crept - self.crept[i][part]);
-                self.crept[i][part] = crept;
+                self.viscoelastic_losses[i][part] += mean * (viscoelastic - self.viscoelastic[i][part]);
+                self.viscoelastic[i][part] = viscoelastic;
             }
         }
     }
@@ -328,8 +330,8 @@ impl<'a> MemoryStepper<'a> {
         let time = |i: usize| {
             let elastic: f64 = self.system.approach[i].iter().zip(&speeds).map(|(b, v)| (b * v).abs()).sum();
             let dent = (self.x[i] - self.past[i]).abs();
-            let beneath = (self.y[i] + self.offset[i] - self.x[i]).abs();
-            let closing = elastic + (dent + beneath) / since - opening[i];
+            let elastic_below = (self.y[i] + self.offset[i] - self.x[i]).abs();
+            let closing = elastic + (dent + elastic_below) / since - opening[i];
             // 0 for what is no number, before the first contact
             if closing <= 0.0 { f64::INFINITY } else { (-self.past[i] / closing).max(0.0) }
         };
@@ -365,13 +367,13 @@ impl<'a> MemoryStepper<'a> {
             self.bodies.contacts[i].taken(self.force[i]) - self.taken_before[i] - self.contact_losses[i]
         };
         // what yields elastically gives its energy back, to the other contact also: so creep is the plate's as a whole, a tip's its contact's
-        let [[outer_plate, outer_tip], [inner_plate, inner_tip]] = self.creep_losses;
+        let [[outer_plate, outer_tip], [inner_plate, inner_tip]] = self.viscoelastic_losses;
         let contact_losses = [self.contact_losses[0] + outer_tip, self.contact_losses[1] + inner_tip];
         let plate_loss = outer_plate + inner_plate;
-        let beneath = work[0] + work[1] - contact_losses[0] - contact_losses[1] - plate_loss;
-        let beneath = if self.force == [0.0; 2] { -beneath } else { 0.0 };
-        let gained = unaccounted + law(0) + law(1) + beneath;
-        let residual = unaccounted.abs() + law(0).abs() + law(1).abs() + beneath.abs();
+        let elastic_below = work[0] + work[1] - contact_losses[0] - contact_losses[1] - plate_loss;
+        let elastic_below = if self.force == [0.0; 2] { -elastic_below } else { 0.0 };
+        let gained = unaccounted + law(0) + law(1) + elastic_below;
+        let residual = unaccounted.abs() + law(0).abs() + law(1).abs() + elastic_below.abs();
         let integration = Integration {
             velocity,
             contacts: self.contacts,
@@ -383,7 +385,7 @@ impl<'a> MemoryStepper<'a> {
                 plate_damping: self.modal_loss + plate_loss,
                 // every law knows what it has dissipated, which is never negative
                 contacts: Some([0, 1].map(|i| {
-                    let [_, tip] = self.creep_losses[i];
+                    let [_, tip] = self.viscoelastic_losses[i];
                     self.bodies.contacts[i].dissipated() - self.dissipated_before[i] + tip
                 })),
                 ..Losses::default()
@@ -391,7 +393,7 @@ impl<'a> MemoryStepper<'a> {
             steps: self.steps,
             error_estimate: None,
             converged: None,
-            kept_tolerance: CHANGE,
+            least_tolerance: CHANGE,
             supplied: None,
             stop: StopReason::of(self.contacts.iter().any(|contact| contact.closed)),
             history: self.history,

@@ -6,13 +6,13 @@
 //! and on its rate, and are solved for implicitly: however stiff the film, the step is as long as its accuracy permits.
 //! There is no free flight, since the film acts at any distance.
 
+mod contact_between;
 mod fluid_forces;
 mod full_newton;
 mod guess;
 mod run;
 mod solve;
 mod table;
-mod touch_between;
 
 pub use fluid_forces::{FluidForces, FluidLoad, Tangent};
 pub use run::integrate;

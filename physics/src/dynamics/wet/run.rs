@@ -10,7 +10,7 @@ use super::guess::StepForces;
 use super::solve::{END, Trial, Wet};
 use super::table::WetTable;
 use crate::dynamics::collocation::{Collocation, RADAU_POINTS};
-use crate::dynamics::contact_ledger::{ContactLedger, StepCourse};
+use crate::dynamics::contact_balance::{ContactBalance, StepCourse};
 use crate::dynamics::driver::{self, Stepper};
 use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
@@ -68,7 +68,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         v,
         trial,
         before: StepForces::default(),
-        contacts: [ContactLedger::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
+        contacts: [ContactBalance::new(NEGLIGIBLE * system.masses[0] * system.speed); 2],
         booked: FluidAccount::default(),
         energy: EnergyAccount::new(&hit, system.kinetic_energy(), options.tolerance),
         steps: 0,
@@ -110,7 +110,7 @@ struct WetStepper<'a> {
     /// The latest step; its vectors are used again.
     trial: Trial,
     before: StepForces,
-    contacts: [ContactLedger; 2],
+    contacts: [ContactBalance; 2],
     booked: FluidAccount,
     energy: EnergyAccount,
     steps: u64,
@@ -183,7 +183,7 @@ impl WetStepper<'_> {
             let (h, rest) = (self.length.length(), self.end_time - self.time);
             let start = (self.force, &self.load.force[..]);
             let scale = momentum_scale(self.wet.system, &self.contacts);
-            let settled = self.settled(scale);
+            let converged = self.converged(scale);
             self.before.guess(self.collocation, h.min(rest), start, &mut self.trial);
             let system = self.wet.system;
             let last;
@@ -196,7 +196,7 @@ impl WetStepper<'_> {
                     .or_insert_with(|| WetTable::new(system, self.collocation, h))
             };
             let h = table.h;
-            if !self.wet.solve(table, &self.q, &self.v, settled.in_step(h), &mut self.trial) {
+            if !self.wet.solve(table, &self.q, &self.v, converged.in_step(h), &mut self.trial) {
                 self.length.halve();
                 continue;
             }
@@ -205,14 +205,14 @@ impl WetStepper<'_> {
             let excess = (self.defect(h, scale) / self.defect_bound)
                 .max(self.energy.excess(account.energy_error, h, account.rounding))
                 .max(self.force_excess(force_defect, scale))
-                .max(self.passed_touch(h, scale));
+                .max(self.missed_contact(h, scale));
             if excess > 1.0 {
                 self.length.shorten(excess);
                 continue;
             }
             if may_end && let Some(end) = self.end_in_step(h) {
                 let table = WetTable::new(system, self.collocation, end);
-                if !self.wet.solve(&table, &self.q, &self.v, settled.in_step(end), &mut self.trial) {
+                if !self.wet.solve(&table, &self.q, &self.v, converged.in_step(end), &mut self.trial) {
                     self.length.halve();
                     continue;
                 }
@@ -221,7 +221,7 @@ impl WetStepper<'_> {
             }
             self.accept(h, &account)?;
             for (contact, defect) in self.contacts.iter_mut().zip(force_defect) {
-                contact.book_defect(defect);
+                contact.add_defect(defect);
             }
             self.length.lengthen(excess);
             return Ok(false);
@@ -267,11 +267,11 @@ impl WetStepper<'_> {
     }
 
     /// Books the largest contact forces of the step of `h` s just solved.
-    fn book_peaks(&mut self, h: f64) {
+    fn add_peaks(&mut self, h: f64) {
         let (system, trial) = (self.wet.system, &self.trial);
         let forces = self.wet.generalised(trial);
-        let approach = [0, 1].map(|i| joined(self.approach[i], &trial.approach[i]));
-        let force = [0, 1].map(|i| joined(self.force[i], &trial.forces[i]));
+        let approach = [0, 1].map(|i| with_start(self.approach[i], &trial.approach[i]));
+        let force = [0, 1].map(|i| with_start(self.force[i], &trial.forces[i]));
         let motion = |place: f64| {
             let (q, v) = self.motion_at(&forces, place * h, h);
             let weights = self.collocation.interpolation(place);
@@ -322,12 +322,12 @@ impl WetStepper<'_> {
                 time: self.time,
                 h,
                 work: account.contact_work[i],
-                local_approach: joined(self.local[i], &trial.local[i]),
-                force: joined(self.force[i], &trial.forces[i]),
+                local_approach: with_start(self.local[i], &trial.local[i]),
+                force: with_start(self.force[i], &trial.forces[i]),
             };
             self.contacts[i].book(self.collocation, &course);
         }
-        self.book_peaks(h);
+        self.add_peaks(h);
         self.booked.add(&account.fluid);
         self.energy.book(account.energy_error);
         let trial = &mut self.trial;
@@ -346,7 +346,7 @@ impl WetStepper<'_> {
 }
 
 /// Values at the start and Radau's points of a step.
-fn joined(start: f64, stages: &Stages) -> [f64; RADAU_POINTS] {
+fn with_start(start: f64, stages: &Stages) -> [f64; RADAU_POINTS] {
     std::array::from_fn(|p| if p == 0 { start } else { stages[p - 1] })
 }
 

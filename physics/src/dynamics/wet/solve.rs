@@ -71,11 +71,11 @@ impl Wet<'_> {
             stalls = if size > STAGNANT * last { stalls + 1 } else { 0 };
             best = size.min(best);
             // in a very short step any guess gives the right impulse, but not the right energy
-            let settled = size <= force_error && iteration > 0;
+            let converged = size <= force_error && iteration > 0;
             let rounded = stalls >= STALLS
                 && size <= 2.0 * best
                 && size <= (ROUNDED * force_error).max(self.rounding(trial));
-            if settled || rounded {
+            if converged || rounded {
                 return self.balance(table, q, v, trial);
             }
             let slow = size > SLOW * last;

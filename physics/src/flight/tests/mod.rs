@@ -85,7 +85,7 @@ fn range_of_a_throw() {
         for angle in [0.1, 0.27, 0.7, 1.4] {
             let launch = Launch { speed: 1.838, angle, spin: 0.0 };
             let first =
-                fly(&setup, &Landscape::unknown(), &launch, false).first_touch.expect("it comes down");
+                fly(&setup, &Landscape::unknown(), &launch, false).first_contact.expect("it comes down");
             let pull = G + force / setup.mass;
             let range = 1.838_f64.powi(2) * (2.0 * angle).sin() / pull;
             let time = 2.0 * 1.838 * angle.cos() / pull;
@@ -105,7 +105,10 @@ fn the_improved_design_reaches_the_other_seat() {
     let ends = |restitution: f64, launch: &Launch| {
         let setup = valve(37e-3, restitution, 0.2);
         let flight = fly(&setup, &Landscape::new(&setup).expect("held"), launch, false);
-        (flight.ending.seat(), (flight.first_touch.expect("a touch").place - setup.chamber.seats()[1]).norm())
+        (
+            flight.ending.seat(),
+            (flight.first_contact.expect("a touch").place - setup.chamber.seats()[1]).norm(),
+        )
     };
     let (seat, off) = ends(0.0, &launch);
     assert_eq!(seat, Seat::Other);
@@ -126,15 +129,15 @@ fn times_of_a_bouncing_ball() {
     let launch = Launch { speed: 0.3, angle: 0.0, spin: 0.0 };
     let flight = fly(&setup, &Landscape::unknown(), &launch, true);
     assert_eq!(flight.ending, Ending::Seat(Seat::Same), "it lies where it fell");
-    let touches: Vec<f64> = flight.path[1..]
+    let contacts: Vec<f64> = flight.path[1..]
         .iter()
         .filter(|s| s.place.y - setup.radius < 1e-12 && s.velocity.y > 0.0)
         .map(|s| s.time)
         .collect();
     let mut time = 0.0;
-    for (k, touch) in touches.iter().take(12).enumerate() {
+    for (k, instant) in contacts.iter().take(12).enumerate() {
         time += 2.0 * 0.3 * 0.7_f64.powi(k as i32) / G;
-        assert!((touch / time - 1.0).abs() < 1e-9, "touch {k}: {touch} instead of {time}");
+        assert!((instant / time - 1.0).abs() < 1e-9, "touch {k}: {instant} instead of {time}");
     }
     // all of them: 2 v / (g (1 - e)), but for the last bounce of a nanometre
     let all = 2.0 * 0.3 / (G * 0.3);
@@ -190,12 +193,12 @@ fn rolling_off_an_edge() {
 
 /// Nothing is lost without friction at a restitution of 1, however often the sphere bounces.
 #[test]
-fn energy_is_kept_where_nothing_takes_it() {
+fn energy_is_conserved_without_dissipation() {
     let setup = Setup { end_time: 0.5, ..valve(37e-3, 1.0, 0.0) };
     let launch = Launch { speed: 1.838, angle: 0.3, spin: 0.0 };
     let flight = fly(&setup, &Landscape::unknown(), &launch, true);
     assert_eq!(flight.ending, Ending::Moves);
-    assert!(flight.touches > 50, "{}", flight.touches);
+    assert!(flight.contacts > 50, "{}", flight.contacts);
     let energies: Vec<f64> = flight.path.iter().map(|state| setup.energy(state)).collect();
     let kinetic = 0.5 * setup.mass * 1.838_f64.powi(2);
     for energy in energies.iter().map(|energy| (energy - energies[0]) / kinetic) {
@@ -238,16 +241,16 @@ fn friction_of_the_spring_blocks_the_sphere_in_the_middle() {
     let ends = |setup: &Setup, speed: f64| {
         fly(setup, &Landscape::new(setup).expect("two seats"), &along(speed), false).ending
     };
-    let held = (0..200).filter(|k| {
+    let stuck = (0..200).filter(|k| {
         let ending = ends(&blocked, least * (0.9 + 0.005 * f64::from(*k)));
         // held where the spring's push along the floor is below 5 % of that on it
         let in_the_middle = |x: f64| x.abs() <= 0.05 * 5e-3 * (1.0 + 1e-9);
-        if let Ending::Held(x) = ending {
+        if let Ending::Stuck(x) = ending {
             assert!(in_the_middle(x), "{x}")
         }
-        matches!(ending, Ending::Held(_))
+        matches!(ending, Ending::Stuck(_))
     });
-    assert!(held.count() > 20, "friction holds it in a band of speeds");
+    assert!(stuck.count() > 20, "friction holds it in a band of speeds");
     for cured in [rocker(0.3, 0.3, 0.0), rocker(0.3, 0.0, 0.05)] {
         for k in 0..200 {
             let ending = ends(&cured, least * (0.9 + 0.005 * f64::from(k)));
@@ -291,7 +294,7 @@ fn similar_flights_are_similar() {
         let (a, b) = (fly(&small, &one, &launch, false), fly(&large, &other, &scaled, false));
         assert_eq!(a.ending.seat(), b.ending.seat());
         assert!((b.time / a.time / 2.0_f64.sqrt() - 1.0).abs() < 1e-6, "{} {}", a.time, b.time);
-        assert_eq!(a.touches, b.touches);
+        assert_eq!(a.contacts, b.contacts);
     }
 }
 
@@ -309,14 +312,14 @@ fn every_restitution_ends() {
                 assert!(restitution > 0.9 || !unsure, "{restitution} {friction} {angle}: {flight:?}");
                 // nothing takes energy: nothing is certain
                 assert!(restitution < 1.0 || friction > 0.0 || unsure, "{angle}: {flight:?}");
-                assert_eq!(flight.ending.told().is_none(), flight.ending.seat() != Seat::None);
+                assert_eq!(flight.ending.reason().is_none(), flight.ending.seat() != Seat::None);
             }
         }
     }
 }
 
 #[test]
-fn a_sphere_that_nothing_holds_is_told() {
+fn a_sphere_that_nothing_supports_is_reported() {
     let setup = Setup { field: down(-G), ..valve(0.0, 0.5, 0.1) };
     let said = Landscape::new(&setup).expect_err("it falls up");
     assert!(said.contains("do not hold the sphere in the seat it starts from"), "{said}");

@@ -48,18 +48,18 @@ fn start(setup: &PlateImpact, history: &History) -> Vec<Statement> {
         let motion = of(history, body, "displacement")?;
         Some(Statement::new(format!("{body}_displacement_start"), "m", motion[0], 0.0, 1e-3 * peak(motion)))
     };
-    let touch = |force: &[f64]| {
+    let contact_start = |force: &[f64]| {
         let floor = FORCE_FLOOR * peak(force);
-        let touch = force.iter().position(|&f| f > floor).map_or(f64::NAN, |k| history.time[k]);
+        let contact_start = force.iter().position(|&f| f > floor).map_or(f64::NAN, |k| history.time[k]);
         // The force of the first instant may be zero, that of the next sample is not.
         let next = history.time[2.min(history.time.len() - 1)];
-        Statement::new("outer_contact_start", "s", touch, 0.0, next)
+        Statement::new("outer_contact_start", "s", contact_start, 0.0, next)
     };
     // a stack begins at rest, or with what speed it has come to the plate
     let outer = (!matches!(setup.outer.shape, Shape::Stack(_))).then_some(("outer", -speed));
     let velocities = outer.into_iter().chain([("inner", setup.inner.speed)]).filter_map(velocity);
     let displacements = ["outer", "plate", "inner"].into_iter().filter_map(displacement);
-    velocities.chain(displacements).chain(of(history, "outer", "force").map(touch)).collect()
+    velocities.chain(displacements).chain(of(history, "outer", "force").map(contact_start)).collect()
 }
 
 /// The contact forces against what the summary states of them.
@@ -99,8 +99,9 @@ fn efficiency(setup: &PlateImpact, summary: &Summary) -> Option<Statement> {
     let mass_ratio = inner.shape.mass(&inner.material) / outer.shape.mass(&outer.material);
     let along = summary.sideways.map_or(0.0, |sideways| sideways.inner_tangential_velocity_final);
     let efficiency = mass_ratio * (velocity.powi(2) + along.powi(2)) / outer.speed.powi(2);
-    let is_held = outer.shape.is_held();
-    (!is_held).then(|| Statement::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency))
+    let is_mounted = outer.shape.is_mounted();
+    (!is_mounted)
+        .then(|| Statement::new("efficiency", "1", stated, efficiency, EFFICIENCY_SLACK * efficiency))
 }
 
 /// Momentum against impulse and path against velocity.
@@ -109,7 +110,7 @@ fn balances(setup: &PlateImpact, summary: &Summary, history: &History) -> Vec<St
     let interval = summary.sample_interval.unwrap_or(0.0);
     let (outer, inner) = (&setup.outer, &setup.inner);
     // a bender's clamp or a stack's base has a part in its momentum; in a fluid more than the contact force acts on the inner body
-    let outer_mass = (!outer.shape.is_held()).then(|| outer.shape.mass(&outer.material));
+    let outer_mass = (!outer.shape.is_mounted()).then(|| outer.shape.mass(&outer.material));
     let inner_mass = setup.fluid.is_none().then(|| inner.shape.mass(&inner.material));
     let momentum = |(body, mass, sign): (&str, Option<f64>, f64)| {
         let (velocity, force) = (of(history, body, "velocity")?, of(history, body, "force")?);

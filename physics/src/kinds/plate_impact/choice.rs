@@ -13,15 +13,15 @@
 //! with fewer modes tells how many model C needs; built, model C is held against itself with fewer modes (`truncation`), and
 //! has more of them where that finds too large an error. Of a thick plate the layer says little: model C alone is asked.
 
+use super::assembled::Cut;
 use super::closed_form;
 use super::errors::{COVERED, estimated_percent};
-use super::joined::Cut;
 use super::results::PlateQuantities;
-use super::trials::{HALF_SPACES, Lack, RUNGS, Trials};
+use super::trials::{HALF_SPACES, RUNGS, Trials, TruncationError};
 use super::truncation::{by_fewer_modes, of_continuum};
 use super::validity;
 use crate::body::bending;
-use crate::dynamics::assured;
+use crate::dynamics::error_control;
 use crate::dynamics::integration::Options;
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
@@ -54,10 +54,10 @@ const RIM: f64 = 0.03;
 /// Truncation error, relative to the tolerance, at which the layer's own modes end.
 const REFERENCE_SHARE: f64 = 0.05;
 /// Share of the contacts' flexibility, relative to the tolerance, below which more Kirchhoff modes don't help.
-const LEFT_OUT_SHARE: f64 = 0.25;
+const TRUNCATED_SHARE: f64 = 0.25;
 /// Patch radius over the plate's thickness up to which the estimate is a promise: of 1400 random scenes 3 of 32 promises were
 /// broken beyond, 6 of 3027 up to there.
-pub(super) const PROMISED: f64 = 0.9;
+pub(super) const STATED_ACCURACY: f64 = 0.9;
 /// Fewest bending modes that model C is taken with: held against itself with more or fewer, it would agree by chance too often.
 pub(super) const LEAST: usize = 4;
 /// Most modes that model C is built with when its first ones turn out to be too few.
@@ -99,7 +99,7 @@ pub(super) struct ChoicePlan<'a> {
 /// Relative tolerance of the time integration for a tolerance of `auto`.
 pub fn integration_tolerance(tolerance: f64) -> f64 {
     // above this no integration assures itself, and many contacts amplify what it is off by
-    (INTEGRATION_SHARE * tolerance).min(assured::ROUGH)
+    (INTEGRATION_SHARE * tolerance).min(error_control::LOW_ACCURACY)
 }
 
 impl<'a> ChoicePlan<'a> {
@@ -116,7 +116,7 @@ impl<'a> ChoicePlan<'a> {
         };
         let trials = Trials::new(setup, REFERENCE_SHARE * tolerance, options)?;
         let (patch, thickness) = (trials.predictor.patch_radius, setup.plate.thickness);
-        let wide = patch[0].max(patch[1]) > PROMISED * thickness;
+        let wide = patch[0].max(patch[1]) > STATED_ACCURACY * thickness;
         let mut plan = Self {
             tolerance,
             floor: validity::measured_error(patch, thickness).filter(|_| !wide),
@@ -156,14 +156,15 @@ impl<'a> ChoicePlan<'a> {
         }
         let (modes, error) = self.continuum();
         let (Some(layer), Ok(misshapen)) = (self.layer, self.trials.misshapen()) else { return false };
-        let own = closed_form::BY_TWICE * Lack::between(&misshapen, &layer, setup.outer.speed).error;
+        let own =
+            closed_form::BY_TWICE * TruncationError::between(&misshapen, &layer, setup.outer.speed).error;
         self.error = error.map(|error| error.hypot(own));
         if let Some(taken) = self.tried.iter_mut().find(|tried| tried.modes == modes) {
             taken.estimated_error = self.error;
         }
         // only a layer with twice as many modes tells
-        let told = 2 * modes <= self.trials.waves.modes();
-        self.closed_form = self.met() && told && bending::modes(&setup.plate, modes + 1).len() > modes;
+        let is_known = 2 * modes <= self.trials.waves.modes();
+        self.closed_form = self.met() && is_known && bending::modes(&setup.plate, modes + 1).len() > modes;
         self.modes = modes;
         self.closed_form
     }
@@ -185,17 +186,17 @@ impl<'a> ChoicePlan<'a> {
         for modes in KIRCHHOFF_RUNGS.into_iter().take_while(|n| *n <= most) {
             let model = if modes == 1 { Model::A } else { Model::B };
             let Ok(ours) = self.trials.kirchhoff(modes, HALF_SPACES) else { break };
-            let yielding = if tips == HALF_SPACES { Ok(ours) } else { self.trials.kirchhoff(modes, tips) };
-            let Ok(yielding) = yielding else { break };
-            let spheres = Lack::between(&ours, &yielding, speed).times(SPHERES);
-            let plate = Lack::between(&yielding, &layer, speed).times(safety);
+            let compliant = if tips == HALF_SPACES { Ok(ours) } else { self.trials.kirchhoff(modes, tips) };
+            let Ok(compliant) = compliant else { break };
+            let spheres = TruncationError::between(&ours, &compliant, speed).times(SPHERES);
+            let plate = TruncationError::between(&compliant, &layer, speed).times(safety);
             let error = self.total(spheres.error + plate.error + own);
             self.note(model, modes, error, spheres.or(plate).quantity);
             let Some(error) = error else { break };
             if best.is_none_or(|(.., least)| error < least) {
                 best = Some((model, modes, error));
             }
-            if error <= self.tolerance || self.trials.left_out(modes) < LEFT_OUT_SHARE * self.tolerance {
+            if error <= self.tolerance || self.trials.omitted(modes) < TRUNCATED_SHARE * self.tolerance {
                 break;
             }
         }
@@ -205,19 +206,20 @@ impl<'a> ChoicePlan<'a> {
     /// What Kirchhoff's plate, of which `kirchhoff` has all modes, may be off by beyond its difference to the `layer`, which is none itself.
     fn kirchhoff_error(&self, kirchhoff: &PlateQuantities, layer: &PlateQuantities) -> f64 {
         let Trials { setup, tips, .. } = self.trials;
-        let lack = |ours: &PlateQuantities| Lack::between(kirchhoff, ours, setup.outer.speed).error;
+        let truncation =
+            |ours: &PlateQuantities| TruncationError::between(kirchhoff, ours, setup.outer.speed).error;
         let rim = match setup.plate.edge {
             Edge::SimplySupported => {
                 let rim = (self.thickness_ratio() / (1.0 + setup.plate.material.poisson_ratio)).powi(2);
                 // where the plate might as well not give way, its rim does not matter either
                 let rigid = self.trials.kirchhoff(0, tips);
-                rigid.map_or(f64::INFINITY, |rigid| lack(&rigid)).min(RIM * rim)
+                rigid.map_or(f64::INFINITY, |rigid| truncation(&rigid)).min(RIM * rim)
             }
             Edge::Clamped | Edge::Free => 0.0,
         };
         // all of the force on an inner body that is not reached, if it almost is
         let missed = layer.inner_force_peak == 0.0 && self.trials.nearly_reach().unwrap_or(true);
-        self.by_thickness(LAYER_SHARE) * lack(layer) + rim + f64::from(u8::from(missed))
+        self.by_thickness(LAYER_SHARE) * truncation(layer) + rim + f64::from(u8::from(missed))
     }
 
     /// The smallest number of bending modes of model C that is enough, by bisection, and its estimate.
@@ -234,10 +236,10 @@ impl<'a> ChoicePlan<'a> {
         let rungs: Vec<usize> = RUNGS.into_iter().filter(|n| *n >= LEAST && possible(n)).collect();
         let safety = self.safety();
         let mut attempt = |modes: usize| {
-            let lack = self.trials.truncated(modes, self.layer.as_ref());
-            let error = self.total(safety * lack.error);
-            self.note(Model::C, modes, error, lack.quantity);
-            (safety * lack.error <= room, error)
+            let truncation = self.trials.truncated(modes, self.layer.as_ref());
+            let error = self.total(safety * truncation.error);
+            self.note(Model::C, modes, error, truncation.quantity);
+            (safety * truncation.error <= room, error)
         };
         let (mut low, mut high) = (0, rungs.len() - 1);
         let mut found = None;
@@ -257,14 +259,14 @@ impl<'a> ChoicePlan<'a> {
     pub(super) fn judge(&mut self, built: &System, omega_next: f64) {
         self.modes = built.bending_modes();
         let options = &self.trials.options;
-        let lack = if self.is_thick() {
+        let truncation = if self.is_thick() {
             by_fewer_modes(built, options, 4..8, |_| SELF_SAFETY)
         } else {
-            let lack = self.trials.truncated(self.modes, self.layer.as_ref());
-            lack.or(of_continuum(built, omega_next, options)).times(self.safety())
+            let truncation = self.trials.truncated(self.modes, self.layer.as_ref());
+            truncation.or(of_continuum(built, omega_next, options)).times(self.safety())
         };
-        self.error = self.total(lack.error);
-        self.note(Model::C, self.modes, self.error, lack.quantity);
+        self.error = self.total(truncation.error);
+        self.note(Model::C, self.modes, self.error, truncation.quantity);
         let more = 2 * built.modes;
         let possible = self.total(0.0).is_some_and(|least| least < self.tolerance);
         let helps = !self.met() && more <= MOST_BUILT && possible;
@@ -290,7 +292,7 @@ impl<'a> ChoicePlan<'a> {
 
     /// Error over what model C is estimated to lack.
     fn safety(&self) -> f64 {
-        self.by_thickness(BUILT_SAFETY) * closed_form::amplified(self.trials.predictor.touches)
+        self.by_thickness(BUILT_SAFETY) * closed_form::amplified(self.trials.predictor.repeated_contacts)
     }
 
     /// An error with what models with few modes lack and with the floor; `None` where that is not known.
@@ -372,7 +374,7 @@ impl<'a> ChoicePlan<'a> {
                 "model {model} is taken without an estimate: with fewer modes its contacts have no solution"
             ),
             _ => format!(
-                "model {model} is taken without an estimate: the contact patches are wider, over the plate's thickness, than those up to which estimates were found true ({PROMISED})"
+                "model {model} is taken without an estimate: the contact patches are wider, over the plate's thickness, than those up to which estimates were found true ({STATED_ACCURACY})"
             ),
         }
     }

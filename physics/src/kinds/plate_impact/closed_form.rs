@@ -10,8 +10,8 @@
 //! estimate. Their shapes are off by what the closed form may be ([`misshapen`]), so that impacts which take small errors far tell it.
 
 use super::PlateImpact;
+use super::assembled::{Assembled, join};
 use super::errors::{COVERED, largest_error};
-use super::joined::{Joined, join};
 use super::predictor::Predictor;
 use super::results::quantities;
 use super::{choice, validity};
@@ -45,7 +45,7 @@ const CLOSED_FORM: [f64; 2] = [5e-4, 6.0];
 /// beyond the first of either body, squared.
 const BY_CONTACT: f64 = 10.0;
 const BY_PLATE: f64 = 80.0;
-const BY_TOUCHES: f64 = 0.1;
+const BY_CONTACTS: f64 = 0.1;
 /// Error over what as many modes again change.
 pub(super) const BY_TWICE: f64 = 2.0;
 
@@ -83,8 +83,8 @@ pub(super) fn misshapen(mut body: ModalBody, plate: &Plate) -> ModalBody {
 }
 
 /// What many touches make of an error: each takes what was wrong before it further.
-pub(super) fn amplified(touches: f64) -> f64 {
-    1.0 + BY_TOUCHES * touches * touches
+pub(super) fn amplified(repeated_contacts: f64) -> f64 {
+    1.0 + BY_CONTACTS * repeated_contacts * repeated_contacts
 }
 
 /// Model C of `setup` with as few modes as are estimated to be enough for `tolerance` until `end_time` s; `None` if no number is, or
@@ -96,9 +96,9 @@ pub(super) fn choose(
     setup: &PlateImpact,
     tolerance: f64,
     end_time: Option<f64>,
-) -> Result<Option<(Joined, Choice)>> {
+) -> Result<Option<(Assembled, Choice)>> {
     let plate = &setup.plate;
-    if setup.fluid.is_some() || setup.outer.shape.is_held() || !holds(setup, [0.0; 2]) {
+    if setup.fluid.is_some() || setup.outer.shape.is_mounted() || !holds(setup, [0.0; 2]) {
         return Ok(None);
     }
     let mut modes = bending::modes(plate, FIRST);
@@ -108,18 +108,25 @@ pub(super) fn choose(
     let look = join(setup, waves(plate, &modes[..modes.len().min(LOOK)]), [0.0; 2])?;
     let predictor = Predictor::rough(&look, NEGLIGIBLE * plate.thickness)?;
     let patch = predictor.patch_radius;
-    let wide = patch[0].max(patch[1]) > choice::PROMISED * plate.thickness;
+    let wide = patch[0].max(patch[1]) > choice::STATED_ACCURACY * plate.thickness;
     let floor = validity::measured_error(patch, plate.thickness).filter(|_| !wide && holds(setup, patch));
     let Some(floor) = floor else { return Ok(None) };
     let approach = look.laws[0].approach(predictor.force_peak[0]) / predictor.force_peak[0];
-    let total = |lack: f64, next: &BendingMode| (lack + predictor.undamped(plate, next.omega)).hypot(floor);
-    let own = own_error(plate) * amplified(predictor.touches);
+    let total = |truncation: f64, next: &BendingMode| {
+        (truncation + predictor.undamped(plate, next.omega)).hypot(floor)
+    };
+    let own = own_error(plate) * amplified(predictor.repeated_contacts);
     let enough = |modes: &[BendingMode]| {
-        let lacks = lacks(plate, modes, &predictor);
-        let estimate = |(n, lack): (usize, &ModalTruncation)| {
-            (n, total(own + lack.error(approach, predictor.touches), &modes[n]))
+        let truncations = truncations(plate, modes, &predictor);
+        let estimate = |(n, truncation): (usize, &ModalTruncation)| {
+            (n, total(own + truncation.error(approach, predictor.repeated_contacts), &modes[n]))
         };
-        lacks.iter().enumerate().skip(choice::LEAST).map(estimate).find(|(_, error)| *error <= tolerance)
+        truncations
+            .iter()
+            .enumerate()
+            .skip(choice::LEAST)
+            .map(estimate)
+            .find(|(_, error)| *error <= tolerance)
     };
     let mut found = enough(&modes);
     while found.is_none() && modes.len() < MOST {
@@ -169,7 +176,7 @@ pub(super) fn choose(
         tried: vec![candidate],
         reason: REASON.to_owned(),
     };
-    Ok(Some((Joined { system, omega_next: modes[count].omega, fluid: None, warnings }, choice)))
+    Ok(Some((Assembled { system, omega_next: modes[count].omega, fluid: None, warnings }, choice)))
 }
 
 /// The plate with these `modes` alone, seen from points.
@@ -188,39 +195,39 @@ fn waves(plate: &Plate, modes: &[BendingMode]) -> ModalBody {
 #[derive(Debug, Clone, Copy, Default)]
 struct ModalTruncation {
     /// What they yield at the outer face times w/omega, m/N.
-    yielding: f64,
+    compliance: f64,
     /// What they yield between the faces times (w/omega)^2, over what the plate moves by.
     share: f64,
 }
 
 impl ModalTruncation {
-    /// Relative error of the forces, with the `approach` of the outer contact in m/N and so many `touches` beyond the first of either
+    /// Relative error of the forces, with the `approach` of the outer contact in m/N and so many `repeated_contacts` beyond the first of either
     /// body.
-    fn error(&self, approach: f64, touches: f64) -> f64 {
-        let once = BY_CONTACT * self.yielding / approach + BY_PLATE * self.share;
-        once * amplified(touches)
+    fn error(&self, approach: f64, repeated_contacts: f64) -> f64 {
+        let once = BY_CONTACT * self.compliance / approach + BY_PLATE * self.share;
+        once * amplified(repeated_contacts)
     }
 }
 
 /// What is lacking with the first n of the `modes`. Shape (modes).
-fn lacks(plate: &Plate, modes: &[BendingMode], predictor: &Predictor) -> Vec<ModalTruncation> {
+fn truncations(plate: &Plate, modes: &[BendingMode], predictor: &Predictor) -> Vec<ModalTruncation> {
     let (slow, patch) = (predictor.slow(), predictor.patch_radius);
-    let mut lacks = vec![ModalTruncation::default(); modes.len()];
+    let mut truncations = vec![ModalTruncation::default(); modes.len()];
     // a force of the contacts' frequency moves slower modes by their inertia
     let mut motion = if plate.edge == Edge::Free { 1.0 / (plate.mass() * slow * slow) } else { 0.0 };
-    let mut lack = ModalTruncation::default();
+    let mut truncation = ModalTruncation::default();
     for (n, mode) in modes.iter().enumerate().rev() {
         let phi = patch.map(|a| mode.under(a));
         let late = slow / mode.omega;
         // shapes grow as the root of the number and frequencies as its square: what is beyond the last goes on as its powers
         let beyond = |power: f64| if n + 1 == modes.len() { 1.0 + modes.len() as f64 / power } else { 1.0 };
-        lack.yielding += beyond(4.0) * late * (phi[0] / mode.omega).powi(2);
-        lack.share += beyond(6.0) * late.powi(2) * phi[0] * phi[1] / mode.omega.powi(2);
+        truncation.compliance += beyond(4.0) * late * (phi[0] / mode.omega).powi(2);
+        truncation.share += beyond(6.0) * late.powi(2) * phi[0] * phi[1] / mode.omega.powi(2);
         motion += phi[0] * phi[0] / (mode.omega.powi(2) + slow * slow);
-        lacks[n] = lack;
+        truncations[n] = truncation;
     }
-    for lack in &mut lacks {
-        lack.share /= motion;
+    for truncation in &mut truncations {
+        truncation.share /= motion;
     }
-    lacks
+    truncations
 }

@@ -17,7 +17,7 @@ use crate::scene::{Bender, Fluid, Model, Shape};
 use std::f64::consts::{PI, TAU};
 
 /// Modes whose frequencies are held against closed forms.
-const HELD_MODES: usize = 8;
+const MOUNTED_MODES: usize = 8;
 /// Duration of a contact over the time of its relaxation.
 const SHORT: f64 = 0.01;
 /// Models with the same beam, film and springs.
@@ -88,28 +88,28 @@ fn plate(setup: &PlateImpact) -> Result<f64> {
         plate.radius,
         rigidity,
         material.density * plate.thickness,
-        HELD_MODES,
+        MOUNTED_MODES,
     );
-    let modes = kirchhoff::modes(plate, HELD_MODES)?;
+    let modes = kirchhoff::modes(plate, MOUNTED_MODES)?;
     let elastic = modes.omega.into_iter().filter(|omega| *omega > 0.0);
     Ok(largest(elastic.map(|omega| omega / TAU), exact))
 }
 
 fn beam(bender: &Bender) -> Result<f64> {
     let Bender { length, bending_stiffness, line_mass, tip_mass, .. } = *bender;
-    let exact = cantilever::frequencies(length, bending_stiffness, line_mass, tip_mass, HELD_MODES);
+    let exact = cantilever::frequencies(length, bending_stiffness, line_mass, tip_mass, MOUNTED_MODES);
     let omega = Beam::new(bender, MODES)?.omega;
     Ok(largest(omega.into_iter().map(|omega| omega / TAU), exact))
 }
 
 /// A plate that does not move.
-fn held() -> ModalBody {
+fn rigid_plate() -> ModalBody {
     ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None }
 }
 
 /// The outer body on a plate that does not move.
 fn contact(setup: &PlateImpact) -> Result<f64> {
-    let system = setup.rigid_system(&held(), [0.0; 2]);
+    let system = setup.rigid_system(&rigid_plate(), [0.0; 2]);
     let hit = system.hertz_impact();
     let run = integrate(&system, &Options { end_time: Some(2.0 * hit.duration()), ..Options::default() })?;
     Ok((run.contacts[0].force_peak / hit.force_peak() - 1.0).abs())
@@ -119,13 +119,13 @@ fn contact(setup: &PlateImpact) -> Result<f64> {
 /// The Hertz contact problem, J. Mech. Phys. Solids 8, 1960, 219), to first order in T/tau.
 fn lost_speed(setup: &PlateImpact) -> Result<f64> {
     let mut maxwell = PlateImpact { fluid: None, ..setup.clone() };
-    let elastic = maxwell.rigid_system(&held(), [0.0; 2]);
+    let elastic = maxwell.rigid_system(&rigid_plate(), [0.0; 2]);
     let duration = elastic.hertz_impact().duration();
     for material in [&mut maxwell.outer.material, &mut maxwell.plate.material] {
         material.relaxation = vec![Relaxation { ratio: 1.0, time: duration / SHORT }];
         material.hardening = None;
     }
-    let system = maxwell.rigid_system(&held(), [0.0; 2]);
+    let system = maxwell.rigid_system(&rigid_plate(), [0.0; 2]);
     let options = Options { end_time: Some(2.0 * duration), ..Options::default() };
     let run = match maxwell.memory(&system)? {
         Some(memory) => memory::integrate(&system, &memory, &options)?.0,

@@ -38,7 +38,7 @@ pub(super) fn laws(
     laws.extend(directions(setup, is_cut, summary));
     laws.extend(history.and_then(|history| inner_is_pushed(setup, history)));
     // the clamp of a bender and the voltage of a stack bring energy and momentum of their own
-    if !setup.outer.shape.is_held() {
+    if !setup.outer.shape.is_mounted() {
         let scales = ImpactScales::of(setup);
         laws.extend(energy(&scales, setup, summary));
         laws.extend(scales.forces_and_times(summary));
@@ -53,7 +53,7 @@ fn directions(setup: &PlateImpact, is_cut: bool, summary: &Summary) -> Vec<State
     let slack = if setup.fluid.is_some() { FILM_SLACK } else { DIRECTION_SLACK } * outer.speed;
     let common = common_velocity(setup).filter(|_| !is_cut);
     let highest = common.map_or(inner.speed, |common| common.min(inner.speed));
-    let lowest = common.filter(|_| !outer.shape.is_held());
+    let lowest = common.filter(|_| !outer.shape.is_mounted());
     let value = |name: &str| summary.value(name);
     let inner = value("inner_velocity_final")
         .map(|v| Statement::at_most("inner_velocity_final_direction", "m/s", v, highest, slack));
@@ -71,7 +71,7 @@ fn common_velocity(setup: &PlateImpact) -> Option<f64> {
     }
     let (outer, inner) = masses(setup);
     let momentum = inner * setup.inner.speed - outer * setup.outer.normal_speed();
-    let is_conserved = setup.outer.is_centred() && !setup.outer.shape.is_held();
+    let is_conserved = setup.outer.is_centred() && !setup.outer.shape.is_mounted();
     is_conserved.then(|| momentum / (outer + setup.plate.mass() + inner))
 }
 

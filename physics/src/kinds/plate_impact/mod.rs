@@ -1,12 +1,12 @@
 //! An outer body strikes a plate, the plate passes the blow to an inner body: reduced models A, B and C.
 
+mod assembled;
 mod checks;
 pub mod choice;
 mod closed_form;
 pub mod closed_forms;
 mod continua;
 pub mod errors;
-mod joined;
 mod laws;
 mod limits;
 mod predictor;

@@ -1,8 +1,8 @@
 //! A first look at an impact: contact patches, force peaks and how quick the contacts are.
 
+use crate::dynamics::impulse_splitting::{self, SplittingPeak};
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
-use crate::dynamics::kicks::{self, Kicked};
 use crate::dynamics::system::System;
 use crate::error::Result;
 use crate::scene::Plate;
@@ -28,7 +28,7 @@ pub(super) struct Predictor {
     /// Angular frequency in rad/s of the quicker contact, pi over the duration of a half-sine with its impulse and peak.
     contact_frequency: f64,
     /// Contacts beyond the first of either body.
-    pub(super) touches: f64,
+    pub(super) repeated_contacts: f64,
 }
 
 impl Predictor {
@@ -43,13 +43,13 @@ impl Predictor {
     /// 3e-4. A contact that presses much less is known to a half, its patch to a quarter: unless that is below `negligible` m, it takes a
     /// better look.
     pub(super) fn rough(system: &System, negligible: f64) -> Result<Self> {
-        let Some([outer, inner]) = kicks::run(system) else { return Self::of(system) };
+        let Some([outer, inner]) = impulse_splitting::run(system) else { return Self::of(system) };
         let patch = system.laws[1].contact_radius(inner.force_peak);
         let unknown = inner.force_peak < WEAK * outer.force_peak && patch > negligible;
         if unknown || inner.force_peak == 0.0 {
             return Self::of(system);
         }
-        let of = |contact: Kicked| (contact.force_peak, contact.impulse);
+        let of = |contact: SplittingPeak| (contact.force_peak, contact.impulse);
         Ok(Self::from(system, of(outer), Some(of(inner)), [outer.contacts, inner.contacts]))
     }
 
@@ -66,7 +66,7 @@ impl Predictor {
             patch_radius: [outer.0, inner.0],
             force_peak: [outer.2, inner.2],
             contact_frequency: outer.1.max(inner.1),
-            touches: counts.map(|count| f64::from(count.saturating_sub(1))).iter().sum(),
+            repeated_contacts: counts.map(|count| f64::from(count.saturating_sub(1))).iter().sum(),
         }
     }
 

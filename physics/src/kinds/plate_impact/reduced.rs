@@ -2,10 +2,10 @@
 
 mod run;
 
+use super::assembled::{Assembled, RequestedModes, continuum, kirchhoff, kirchhoff_plate};
 use super::choice::ChoicePlan;
 use super::closed_form;
 use super::continua::Continua;
-use super::joined::{Joined, Wanted, continuum, kirchhoff, kirchhoff_plate};
 use super::results::PlateQuantities;
 use super::shared::SharedBodies;
 use super::{MAX_MODES, PlateImpact};
@@ -81,8 +81,8 @@ impl Reduced {
             }
             Model::C => {
                 let predictor = bodies.predictor(setup)?;
-                let wanted = modes.map_or(Wanted::Estimate, Wanted::Modes);
-                continuum(setup, wanted, &predictor, bodies.continua())?
+                let requested = modes.map_or(RequestedModes::Estimate, RequestedModes::Modes);
+                continuum(setup, requested, &predictor, bodies.continua())?
             }
         };
         Self::of(built, model, scene, None)
@@ -117,9 +117,14 @@ impl Reduced {
             return Self::of(built, Model::C, scene.clone(), Some(choice));
         }
         let mut plan = ChoicePlan::new(&normal, tolerance)?;
-        let mut continua: Option<Joined> = plan.closed_form.then(|| plan.trials.closed_form(plan.modes));
+        let mut continua: Option<Assembled> = plan.closed_form.then(|| plan.trials.closed_form(plan.modes));
         while let Some(cut) = plan.cut {
-            match continuum(setup, Wanted::Below(cut), &plan.trials.predictor, Continua::meshed(cache)) {
+            match continuum(
+                setup,
+                RequestedModes::Below(cut),
+                &plan.trials.predictor,
+                Continua::meshed(cache),
+            ) {
                 Ok(built) => {
                     plan.judge(&built.system, built.omega_next);
                     continua = Some(built);
@@ -137,8 +142,8 @@ impl Reduced {
         Self::of(built, plan.model, scene.clone(), Some(plan.choice()))
     }
 
-    fn of(built: Joined, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
-        let Joined { mut system, omega_next, fluid, mut warnings } = built;
+    fn of(built: Assembled, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
+        let Assembled { mut system, omega_next, fluid, mut warnings } = built;
         let memory = scene.plate_impact()?.memory(&system)?;
         let choice = choice.map(|choice| match memory {
             Some(_) => Choice {
@@ -196,15 +201,15 @@ mod tests {
 
     /// As the references found it: 6 % too low with 10 mPa s, half a percent in water.
     #[test]
-    fn a_film_that_is_too_strong_for_bodies_without_dents_is_told() {
+    fn a_film_too_strong_for_rigid_surfaces_has_a_warning() {
         let viscous = include_str!("../../../../scenes/validation/viscous-film.toml");
         let water = include_str!("../../../../scenes/validation/squeeze-film.toml");
-        for (text, told) in [(viscous, true), (water, false)] {
+        for (text, is_warned) in [(viscous, true), (water, false)] {
             let scene = Scene::parse("film.toml", text).unwrap();
             let summary = Reduced::new(&scene, Model::B, None).unwrap().run(1e-4).unwrap();
             assert_eq!(
                 summary.warnings.iter().any(|w| w.contains("squeeze film dissipates")),
-                told,
+                is_warned,
                 "{summary:?}"
             );
         }

@@ -2,7 +2,7 @@
 
 use super::results::values;
 use crate::dynamics::StopReason;
-use crate::dynamics::assured::assured;
+use crate::dynamics::error_control::controlled;
 use crate::dynamics::integrate;
 use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::memory::{self, ForceHistory, Memory, OnsetOfYield};
@@ -21,7 +21,7 @@ pub(super) const SAMPLES_PER_CONTACT: f64 = 400.0;
 
 /// Runs after which no elastic limit is found, and the relative change from one to the next that is in order.
 const MOST_RUNS: usize = 30;
-const SETTLED: f64 = 1e-5;
+const CONVERGED: f64 = 1e-5;
 
 /// The impacts of a model.
 pub(super) struct Impacts<'a> {
@@ -95,7 +95,7 @@ impl Impacts<'_> {
     }
 
     fn elastic(&self, options: &Options) -> Result<Integration> {
-        assured(options, self.system, |options| integrate(self.system, self.fluid, options))
+        controlled(options, self.system, |options| integrate(self.system, self.fluid, options))
     }
 
     /// The elastic impact, and the course of its forces.
@@ -136,7 +136,7 @@ impl Impacts<'_> {
                 let onset = onset.force(i, system, &loads)?;
                 let growth = (onset / result.contacts[i].force_peak).powf(5.0 / 6.0);
                 speed *= growth;
-                if (growth - 1.0).abs() < SETTLED {
+                if (growth - 1.0).abs() < CONVERGED {
                     return Some(speed);
                 }
                 if !speed.is_normal() {

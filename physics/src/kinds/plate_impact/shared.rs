@@ -1,8 +1,8 @@
 //! What the impacts of a series share, so that only the first of them pays for its bodies.
 
 use super::PlateImpact;
+use super::assembled::{join, kirchhoff_system};
 use super::continua::Continua;
-use super::joined::{join, kirchhoff_system};
 use super::predictor::Predictor;
 use super::reduced::Reduced;
 use crate::body::cache::Cache;
@@ -68,7 +68,7 @@ impl SharedBodies {
         if self.continuum.is_none() {
             return Predictor::of(&kirchhoff_system(setup, DEFAULT_MODES, &self.kirchhoff)?);
         }
-        let plate = self.kirchhoff.rough_modes(&setup.plate, DEFAULT_MODES)?;
+        let plate = self.kirchhoff.initial_modes(&setup.plate, DEFAULT_MODES)?;
         Predictor::rough(&join(setup, plate, [0.0; 2])?, 0.0)
     }
 

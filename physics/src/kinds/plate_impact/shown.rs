@@ -22,9 +22,9 @@ pub(super) fn shown(setup: &PlateImpact, history: &History) -> Table {
     for body in ["outer", "inner"] {
         let Some(force) = history.curve(&format!("{body}_force")) else { continue };
         let floor = FORCE_FLOOR * peak(force);
-        let touches = |k: usize| force[k] > floor;
-        let last = (0..force.len()).rev().find(|k| touches(*k));
-        let begins = (0..force.len()).filter(|&k| touches(k) && (k == 0 || !touches(k - 1))).count();
+        let in_contact = |k: usize| force[k] > floor;
+        let last = (0..force.len()).rev().find(|k| in_contact(*k));
+        let begins = (0..force.len()).filter(|&k| in_contact(k) && (k == 0 || !in_contact(k - 1))).count();
         let is_over = last.is_none_or(|k| k + 1 < force.len());
         set(&format!("{body}_force_peak"), Some(force.iter().fold(0.0, |a, f| f64::max(a, *f))));
         set(&format!("{body}_contact_end"), is_over.then(|| last.map_or(0.0, |k| history.time[k])));
@@ -40,10 +40,10 @@ pub(super) fn shown(setup: &PlateImpact, history: &History) -> Table {
     set("inner_velocity_final", inner);
     let mass_ratio =
         setup.inner.shape.mass(&setup.inner.material) / setup.outer.shape.mass(&setup.outer.material);
-    let is_held = setup.outer.shape.is_held();
+    let is_mounted = setup.outer.shape.is_mounted();
     let efficiency = |velocity: f64| mass_ratio * (velocity / setup.outer.speed).powi(2);
     // the motion along the plate is no curve
-    set("efficiency", inner.filter(|_| !is_held && setup.outer.angle == 0.0).map(efficiency));
+    set("efficiency", inner.filter(|_| !is_mounted && setup.outer.angle == 0.0).map(efficiency));
     table
 }
 

@@ -5,9 +5,9 @@
 //! costs as much as a run of models A and B.
 
 use super::PlateImpact;
+use super::assembled::{Assembled, Cut, fluid_forces};
 use super::closed_form;
 use super::errors::largest_error;
-use super::joined::{Cut, Joined, fluid_forces};
 use super::predictor::Predictor;
 use super::results::{PlateQuantities, quantities};
 use super::validity;
@@ -40,14 +40,14 @@ pub(super) const HALF_SPACES: [f64; 2] = [0.0; 2];
 
 /// What a model lacks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Lack {
+pub(super) struct TruncationError {
     /// Estimated relative error.
     pub(super) error: f64,
     /// The quantity that has it, if it is known.
     pub(super) quantity: Option<&'static str>,
 }
 
-impl Lack {
+impl TruncationError {
     /// The largest error of `candidate` against `exact` of the quantities covered; `speed` in m/s is that of the impact.
     pub(super) fn between(candidate: &PlateQuantities, exact: &PlateQuantities, speed: f64) -> Self {
         let (error, name) = largest_error(candidate, exact, speed);
@@ -141,10 +141,10 @@ impl<'a> Trials<'a> {
     }
 
     /// [`Self::continuum`], ready to run, of a dry impact.
-    pub(super) fn closed_form(&self, modes: usize) -> Joined {
+    pub(super) fn closed_form(&self, modes: usize) -> Assembled {
         let system = self.layered(modes);
         let warnings = validity::warnings(self.setup, &self.predictor, &system);
-        Joined { system, omega_next: self.layer.omega_next(modes), fluid: None, warnings }
+        Assembled { system, omega_next: self.layer.omega_next(modes), fluid: None, warnings }
     }
 
     /// The layer with `modes` bending modes between the spheres.
@@ -170,20 +170,20 @@ impl<'a> Trials<'a> {
 
     /// Largest estimated error of the quantities covered that model C has with `modes` bending modes for want of more, and the
     /// quantity; `converged` is the layer with all its modes.
-    pub(super) fn truncated(&self, modes: usize, converged: Option<&PlateQuantities>) -> Lack {
+    pub(super) fn truncated(&self, modes: usize, converged: Option<&PlateQuantities>) -> TruncationError {
         let alone = self.truncation(modes);
         match (converged, self.continuum(modes)) {
             (Some(exact), Ok(ours)) => {
-                let lack = Lack::between(&ours, exact, self.setup.outer.speed);
-                Lack { error: SAFETY * lack.error + TRUNCATION_SHARE * alone, ..lack }
+                let truncation = TruncationError::between(&ours, exact, self.setup.outer.speed);
+                TruncationError { error: SAFETY * truncation.error + TRUNCATION_SHARE * alone, ..truncation }
             }
-            _ => Lack { error: alone, quantity: None },
+            _ => TruncationError { error: alone, quantity: None },
         }
     }
 
     /// Share of the static flexibility at the contacts that Kirchhoff's plate with `modes` modes leaves out, the contacts' own at
     /// their force peaks being one.
-    pub(super) fn left_out(&self, modes: usize) -> f64 {
+    pub(super) fn omitted(&self, modes: usize) -> f64 {
         let plate = self.waves.kirchhoff(self.waves.modes());
         let rigid = plate.omega.iter().filter(|omega| **omega == 0.0).count();
         let modal = plate.omega.iter().zip(&plate.participation).skip(rigid + modes);

@@ -4,10 +4,10 @@
 //! with more modes ([`Trials`]), which knows bending far from the rim, and against itself with fewer modes, which knows the
 //! rest. A fluid's film and drag are omitted of both.
 
+use super::assembled::off_centre_system;
 use super::errors::estimated_percent;
-use super::joined::off_centre_system;
 use super::results::quantities;
-use super::trials::{HALF_SPACES, Lack, RUNGS, Trials};
+use super::trials::{HALF_SPACES, RUNGS, Trials, TruncationError};
 use super::{MAX_MODES, PlateImpact};
 use crate::body::off_centre;
 use crate::dynamics::integration::Options;
@@ -71,26 +71,26 @@ pub(super) fn estimate(
     let of = |modes: usize| match (model, &converged) {
         (Model::C, layer) => trials.truncated(modes, layer.as_ref()),
         (_, Some(all)) => match trials.kirchhoff(modes, HALF_SPACES) {
-            Ok(ours) => Lack::between(&ours, all, setup.outer.speed),
-            Err(_) => Lack { error: trials.truncation(modes), quantity: None },
+            Ok(ours) => TruncationError::between(&ours, all, setup.outer.speed),
+            Err(_) => TruncationError { error: trials.truncation(modes), quantity: None },
         },
-        (_, None) => Lack { error: trials.truncation(modes), quantity: None },
+        (_, None) => TruncationError { error: trials.truncation(modes), quantity: None },
     };
     let modes = system.bending_modes();
-    let mut lack = of(modes);
+    let mut truncation = of(modes);
     // models A and B are held against all modes of their own plate, which are no waves under a contact
     let undamped = if model == Model::C { trials.predictor.undamped(&setup.plate, omega_next) } else { 0.0 };
     if model == Model::C && setup.plate.thickness > THIN * setup.plate.radius {
-        lack = lack.or(of_continuum(system, omega_next, &options));
+        truncation = truncation.or(of_continuum(system, omega_next, &options));
     }
-    lack.error += undamped;
-    let warning = (lack.error > LARGEST).then(|| {
+    truncation.error += undamped;
+    let warning = (truncation.error > LARGEST).then(|| {
         let enough = RUNGS.into_iter().find(|n| *n > modes && of(*n).error + undamped <= LARGEST);
         // of a continuum some modes are no bending modes
         let enough = enough.map(|bending| bending + system.modes - modes);
-        warning(model, system.modes, lack, enough)
+        warning(model, system.modes, truncation, enough)
     });
-    Ok(Truncation { error: lack.error, warning })
+    Ok(Truncation { error: truncation.error, warning })
 }
 
 /// The same of a plate that is struck beside its centre, from its difference to many modes and the static flexibility of the waves
@@ -108,24 +108,24 @@ fn off_centre(
         off_centre::flexibility_beyond(&setup.plate, setup.outer.offset, many.highest_frequency());
     // the inner contact closes when the plate moves down
     let all = many.softer([outer, -mutual, inner]);
-    let lack = match (run(system), run(&all)) {
-        (Ok(ours), Ok(more)) => Lack::between(&ours, &more, setup.outer.speed),
-        _ => Lack { error: f64::INFINITY, quantity: None },
+    let truncation = match (run(system), run(&all)) {
+        (Ok(ours), Ok(more)) => TruncationError::between(&ours, &more, setup.outer.speed),
+        _ => TruncationError { error: f64::INFINITY, quantity: None },
     };
-    let lack = lack.times(OFF_CENTRE_SAFETY);
-    let error = lack.error;
+    let truncation = truncation.times(OFF_CENTRE_SAFETY);
+    let error = truncation.error;
     let enough = (system.modes as f64 * error / LARGEST).ceil() as usize;
     let warning = (error > LARGEST)
-        .then(|| warning(model, system.modes, lack, (enough <= MAX_MODES).then_some(enough)));
+        .then(|| warning(model, system.modes, truncation, (enough <= MAX_MODES).then_some(enough)));
     Ok(Truncation { error, warning })
 }
 
 /// What the modes that `system`, a model C, leaves out change, from what its own upper ones do: the error goes with the square of
 /// (contact frequency / lowest frequency left out), that of the system being `omega_next` rad/s.
-pub(super) fn of_continuum(system: &System, omega_next: f64, options: &Options) -> Lack {
+pub(super) fn of_continuum(system: &System, omega_next: f64, options: &Options) -> TruncationError {
     by_fewer_modes(system, options, [4, 6], |modes| {
-        let left_out = system.oscillators[system.elastic().start + modes].omega;
-        let ratio = (left_out / omega_next).powi(2).min(NEAR);
+        let truncated = system.oscillators[system.elastic().start + modes].omega;
+        let ratio = (truncated / omega_next).powi(2).min(NEAR);
         ratio / (1.0 - ratio)
     })
 }
@@ -136,20 +136,20 @@ pub(super) fn by_fewer_modes(
     options: &Options,
     eighths: impl IntoIterator<Item = usize>,
     share: impl Fn(usize) -> f64,
-) -> Lack {
+) -> TruncationError {
     let run = |system: &System| quantities(system, &integrate(system, options)?);
-    let unknown = Lack { error: f64::INFINITY, quantity: None };
+    let unknown = TruncationError { error: f64::INFINITY, quantity: None };
     let Ok(whole) = run(system) else { return unknown };
     let part = |eighths: usize| {
         let modes = eighths * system.modes / 8;
         let Ok(part) = run(&system.lowest(modes)) else { return unknown };
-        Lack::between(&part, &whole, system.speed).times(share(modes))
+        TruncationError::between(&part, &whole, system.speed).times(share(modes))
     };
-    eighths.into_iter().map(part).reduce(Lack::or).unwrap_or(unknown)
+    eighths.into_iter().map(part).reduce(TruncationError::or).unwrap_or(unknown)
 }
 
-fn warning(model: Model, modes: usize, lack: Lack, enough: Option<usize>) -> String {
-    let most = lack.quantity.map_or(String::new(), |name| format!(", most of all {name}"));
+fn warning(model: Model, modes: usize, truncation: TruncationError, enough: Option<usize>) -> String {
+    let most = truncation.quantity.map_or(String::new(), |name| format!(", most of all {name}"));
     let remedy = match (model, enough) {
         (Model::A, Some(enough)) => {
             format!("model B with {enough} modes is within 1 % of all modes of its plate")
@@ -162,6 +162,6 @@ fn warning(model: Model, modes: usize, lack: Lack, enough: Option<usize>) -> Str
     let plural = if modes == 1 { "" } else { "s" };
     format!(
         "model {model} with {modes} mode{plural}: modal truncation error about {}{most}; {remedy}",
-        estimated_percent(lack.error)
+        estimated_percent(truncation.error)
     )
 }

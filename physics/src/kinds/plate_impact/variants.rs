@@ -20,7 +20,7 @@
 //! [`Variants::run`] then fails; there is no plate theory with half-space contact to speak of.
 
 use super::PlateImpact;
-use super::joined::tip_residuals;
+use super::assembled::tip_residuals;
 use super::predictor::Predictor;
 use super::results::PlateQuantities;
 use super::results::quantities;

@@ -9,7 +9,7 @@ use std::ops::Range;
 type Column<'a> = &'a [f32];
 
 /// u = sum_j R_j f_j on a part of the nodes.
-struct Yield<'a, C> {
+struct Deform<'a, C> {
     /// Shape (3, width).
     u: &'a mut [f64],
     part: Range<usize>,
@@ -18,16 +18,16 @@ struct Yield<'a, C> {
 }
 
 /// Displacements `u` (shape (3, width)) of the nodes in `part` under the forces `push` on nodes whose columns `column` gives.
-pub(super) fn yield_under<'c>(
+pub(super) fn deform_under<'c>(
     u: &mut [f64],
     part: Range<usize>,
     column: impl Fn(usize) -> Column<'c>,
     push: &[(usize, Vector3<f64>)],
 ) {
-    Arch::new().dispatch(Yield { u, part, column, push });
+    Arch::new().dispatch(Deform { u, part, column, push });
 }
 
-impl<'c, C: Fn(usize) -> Column<'c>> WithSimd for Yield<'_, C> {
+impl<'c, C: Fn(usize) -> Column<'c>> WithSimd for Deform<'_, C> {
     type Output = ();
 
     #[inline(always)]
@@ -123,7 +123,7 @@ mod tests {
             let push: Vec<_> = (0..count).map(|j| (j, Vector3::from_fn(|_, _| random.f64() - 0.5))).collect();
             let part = width / 3..width;
             let mut u = vec![7.0; 3 * width];
-            yield_under(&mut u, part.clone(), column, &push);
+            deform_under(&mut u, part.clone(), column, &push);
             for (c, k) in (0..3).flat_map(|c| (0..width).map(move |k| (c, k))) {
                 let entry = |j: usize, d: usize| f64::from(column(j)[(3 * d + c) * width + k]);
                 let sum: f64 =

@@ -136,22 +136,22 @@ impl SeatMesh {
     fn build(&self, scene: &SealSeat, zones: &Zones, modes: usize, watch: &mut Watch) -> Result<SeatBody> {
         watch("reading the mesh", 0.0);
         let mesh = self.read()?;
-        let held = supports(scene, &mesh);
-        if !held.contains(&[true; 3]) {
+        let fixed = supports(scene, &mesh);
+        if !fixed.contains(&[true; 3]) {
             return Err(self.of_another("it has no face on the rim of the membrane"));
         }
         let candidates = candidates(scene, &mesh, zones);
-        if !candidates.iter().any(|c| c.partner == super::Partner::Sphere) {
+        if !candidates.iter().any(|c| c.contact_body == super::ContactBody::Sphere) {
             return Err(self.of_another("it has no node on the contact ring"));
         }
         for (tip, x) in scene.actuator.tip_positions.iter().enumerate() {
-            if !candidates.iter().any(|c| c.partner == super::Partner::Tip(tip)) {
+            if !candidates.iter().any(|c| c.contact_body == super::ContactBody::Tip(tip)) {
                 return Err(self.of_another(&format!("it has no node under the tip at x = {x} m")));
             }
         }
         let interface: Vec<usize> = candidates.iter().map(|c| c.node).collect();
         watch("assembly and factorisation", 0.05);
-        let solid = Solid::new(&mesh, &scene.seat.material, &held, &interface)?;
+        let solid = Solid::new(&mesh, &scene.seat.material, &fixed, &interface)?;
         watch("modes and flexibility", 0.6);
         Ok(SeatBody {
             body: solid.at_interface(modes)?,
@@ -173,17 +173,17 @@ fn recorded_geometry(content: &[u8]) -> Option<String> {
 pub fn supports(scene: &SealSeat, mesh: &TetMesh) -> Vec<[bool; 3]> {
     let radius = scene.seat.membrane_radius;
     let in_plane = |p: &Vector3<f64>| p.y.abs() <= ON_PLANE * radius;
-    let mut held: Vec<[bool; 3]> = mesh.points.iter().map(|p| [false, in_plane(p), false]).collect();
+    let mut fixed: Vec<[bool; 3]> = mesh.points.iter().map(|p| [false, in_plane(p), false]).collect();
     for face in mesh.outer_faces() {
         let on_rim = |&node: &usize| {
             let p = mesh.points[node];
             (p.x.hypot(p.y) - radius).abs() < ON_RIM * radius
         };
         if face[..3].iter().all(on_rim) {
-            face.iter().for_each(|&node| held[node] = [true; 3]);
+            face.iter().for_each(|&node| fixed[node] = [true; 3]);
         }
     }
-    held
+    fixed
 }
 
 #[cfg(test)]

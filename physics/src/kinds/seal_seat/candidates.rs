@@ -18,7 +18,7 @@ const ROOM: f64 = 0.85;
 
 /// Which rigid body a candidate can meet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Partner {
+pub enum ContactBody {
     /// The sphere.
     Sphere,
     /// The actuator's tip of this number.
@@ -33,8 +33,8 @@ pub struct Candidate {
     /// Place in m on the exact surface: nodes of straight elements lie beside the cone by the edges' sagitta.
     pub place: Vector3<f64>,
     /// What it may meet.
-    pub partner: Partner,
-    /// Distance in m from where the partner touches first: from the ring along the cone, from the tip's axis.
+    pub contact_body: ContactBody,
+    /// Distance in m from where the other body touches first: from the ring along the cone, from the tip's axis.
     pub offset: f64,
     /// Whether it lies on the flank at the +x side of the seat's axis.
     pub right_flank: bool,
@@ -131,7 +131,7 @@ fn under_tip(scene: &SealSeat, node: usize, place: Vector3<f64>) -> Option<Candi
     Some(Candidate {
         node,
         place: Vector3::new(place.x, place.y, 0.0),
-        partner: Partner::Tip(tip),
+        contact_body: ContactBody::Tip(tip),
         offset,
         right_flank: false,
     })
@@ -197,7 +197,7 @@ impl Cone {
         Candidate {
             node,
             place,
-            partner: Partner::Sphere,
+            contact_body: ContactBody::Sphere,
             offset: self.along(place).abs(),
             right_flank: side >= 0.0,
         }

@@ -56,7 +56,7 @@ pub struct ContactProblem<'a> {
     /// Nodes on the wrong side: in contact with a tensile force, or out of contact and too deep. Shape (n).
     pub(super) wrong: Vec<bool>,
     /// Whether a node is in contact; for [`ContactProblem::mark_wrong`]. Shape (n).
-    touching: Vec<bool>,
+    in_contact: Vec<bool>,
     /// Factor of G on the nodes `factored`, in this order.
     pub(super) factor: Cholesky,
     pub(super) factored: Vec<usize>,
@@ -110,7 +110,7 @@ impl<'a> ContactProblem<'a> {
             watch: Watch::none(n),
             gap: vec![0.0; n],
             wrong: vec![false; n],
-            touching: vec![false; n],
+            in_contact: vec![false; n],
             factor: Cholesky::with_capacity(n),
             factored: Vec::with_capacity(n),
             factor_normal: vec![Vector3::zeros(); n],
@@ -150,7 +150,7 @@ impl<'a> ContactProblem<'a> {
         if let Some(traces) = &self.loads.traces {
             return traces.work;
         }
-        let work = |&i: &usize| self.force_vector(i).dot(&self.watch.yielded(i));
+        let work = |&i: &usize| self.force_vector(i).dot(&self.watch.deformation(i));
         0.5 * self.loads.active.iter().map(work).sum::<f64>()
     }
 
@@ -171,7 +171,7 @@ impl<'a> ContactProblem<'a> {
         }
         if let Some(traces) = &mut self.loads.traces {
             traces.pass(&self.push);
-            self.watch.keep_yielded();
+            self.watch.keep_deformation();
         }
     }
 
@@ -181,18 +181,18 @@ impl<'a> ContactProblem<'a> {
             self.collect_push();
         }
         if let Some(traces) = &mut self.loads.traces {
-            traces.book(&self.push, |i| self.watch.yielded_further(i));
+            traces.book(&self.push, |i| self.watch.further_deformation(i));
         }
     }
 
     /// Copies the present solution.
-    pub fn keep(&self, kept: &mut Loads) {
-        kept.clone_from(&self.loads);
+    pub fn keep(&self, checkpoint: &mut Loads) {
+        checkpoint.clone_from(&self.loads);
     }
 
     /// Goes back to a solution that was kept; a survey has to follow.
-    pub fn go_back(&mut self, kept: &Loads) {
-        self.loads.clone_from(kept);
+    pub fn go_back(&mut self, checkpoint: &Loads) {
+        self.loads.clone_from(checkpoint);
     }
 
     /// Finds the forces at the modal coordinates `modal` in m kg^(1/2).
@@ -212,12 +212,12 @@ impl<'a> ContactProblem<'a> {
         // what they did.
         let mut known = self.watch.len();
         for iteration in 0..MOST {
-            known = self.yield_from(known, self.watch.up_to(&self.loads.active));
+            known = self.deform_from(known, self.watch.up_to(&self.loads.active));
             let worst = self.look_at_set(balls);
             let closed = self.loads.active.is_empty() || (worst <= 1.0 && iteration > 0);
             // A set that is sure to change is not solved to the end.
             let wrong = if closed {
-                known = self.yield_from(known, self.watch.len());
+                known = self.deform_from(known, self.watch.len());
                 self.mark_wrong(balls)
             } else {
                 self.fit(worst > CHORD * last)?;
@@ -246,10 +246,10 @@ impl<'a> ContactProblem<'a> {
     }
 
     /// Lets the residual yield in the slots from `known` to `end`; how many are known then.
-    fn yield_from(&mut self, known: usize, end: usize) -> usize {
+    fn deform_from(&mut self, known: usize, end: usize) -> usize {
         if known < end {
             self.collect_push();
-            self.watch.yield_under(self.nodes, &self.push, known..end);
+            self.watch.deform_under(self.nodes, &self.push, known..end);
         }
         known.max(end)
     }
@@ -312,11 +312,11 @@ impl<'a> ContactProblem<'a> {
     /// Marks the nodes that pull and the open watched ones that are too deep; their number.
     fn mark_wrong(&mut self, balls: &[Ball]) -> usize {
         let mut count = self.mark_tensile();
-        self.touching.fill(false);
-        self.loads.active.iter().for_each(|&i| self.touching[i] = true);
+        self.in_contact.fill(false);
+        self.loads.active.iter().for_each(|&i| self.in_contact[i] = true);
         for slot in 0..self.watch.len() {
             let i = self.watch.node(slot);
-            if !self.touching[i] {
+            if !self.in_contact[i] {
                 self.look(i, balls);
                 self.wrong[i] = self.gap[i] < -self.closed;
                 count += usize::from(self.wrong[i]);
@@ -353,7 +353,7 @@ mod tests {
         let mut random = fastrand::Rng::with_seed(3);
         // the gap of a closed contact, and what the last turn of the normals changes of the indentation
         let bound = 2.0 * CLOSED * INDENTATION;
-        let mut touching = 0;
+        let mut in_contact = 0;
         for n in [1, 2, 5, 12, 40] {
             let (nodes, residual) = nodes(n, &mut random);
             let mut contact = ContactProblem::new(&nodes, INDENTATION, None);
@@ -369,8 +369,8 @@ mod tests {
                 for i in 0..n {
                     let at = Vector3::from_fn(|c, _| {
                         let row = 3 * i + c;
-                        let yields: f64 = (0..3 * n).map(|k| residual[row * 3 * n + k] * force[k]).sum();
-                        nodes.place[i][c] + modal[row] + yields - ball.centre[c]
+                        let deformation: f64 = (0..3 * n).map(|k| residual[row * 3 * n + k] * force[k]).sum();
+                        nodes.place[i][c] + modal[row] + deformation - ball.centre[c]
                     });
                     let distance = at.norm();
                     let (gap, load) = (distance - 10.0, contact.force(i));
@@ -378,11 +378,11 @@ mod tests {
                     assert!(load == 0.0 || gap < bound, "{n} nodes: force {load} over a gap of {gap}");
                     let f = contact.force_vector(i);
                     assert!(f.dot(&at) > (1.0 - 1e-6) * load * distance - 1e-12, "the force is not normal");
-                    touching += usize::from(load > 0.0);
+                    in_contact += usize::from(load > 0.0);
                 }
             }
         }
-        assert!(touching > 50, "{touching}");
+        assert!(in_contact > 50, "{in_contact}");
     }
 
     #[test]

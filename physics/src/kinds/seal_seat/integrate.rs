@@ -70,7 +70,7 @@ struct SealSeatRun<'a> {
     tally: Tally,
     samples: Vec<Sample>,
     start_energy: f64,
-    kept: Checkpoint,
+    checkpoint: Checkpoint,
 }
 
 /// Where a run can go back to.
@@ -93,7 +93,7 @@ impl<'a> SealSeatRun<'a> {
             forces: Forces::default(),
             tally: Tally::default(),
             samples: Vec::new(),
-            kept: Checkpoint {
+            checkpoint: Checkpoint {
                 state: state.clone(),
                 forces: Forces::default(),
                 tally: Tally::default(),
@@ -128,34 +128,34 @@ impl<'a> SealSeatRun<'a> {
     }
 
     fn keep(&mut self) {
-        self.kept.state.clone_from(&self.state);
-        self.kept.forces.clone_from(&self.forces);
-        self.kept.tally = self.tally;
-        self.kept.samples = self.samples.len();
-        self.workspace.contact.keep(&mut self.kept.loads);
+        self.checkpoint.state.clone_from(&self.state);
+        self.checkpoint.forces.clone_from(&self.forces);
+        self.checkpoint.tally = self.tally;
+        self.checkpoint.samples = self.samples.len();
+        self.workspace.contact.keep(&mut self.checkpoint.loads);
     }
 
     fn go_back(&mut self) {
-        self.state.clone_from(&self.kept.state);
-        self.forces.clone_from(&self.kept.forces);
-        self.tally = self.kept.tally;
-        self.samples.truncate(self.kept.samples);
-        self.workspace.contact.go_back(&self.kept.loads);
+        self.state.clone_from(&self.checkpoint.state);
+        self.forces.clone_from(&self.checkpoint.forces);
+        self.tally = self.checkpoint.tally;
+        self.samples.truncate(self.checkpoint.samples);
+        self.workspace.contact.go_back(&self.checkpoint.loads);
     }
 
     fn step(&mut self) -> Result<()> {
         let step = self.options.step;
-        self.kick(0.5 * step);
+        self.apply_impulse(0.5 * step);
         self.drift(step);
         self.workspace.contact.pass();
         self.workspace.forces(self.system, &self.state, step, &mut self.forces)?;
-        self.kick(0.5 * step);
+        self.apply_impulse(0.5 * step);
         self.tally.steps += 1;
         self.sample();
         Ok(())
     }
 
-    fn kick(&mut self, step: f64) {
+    fn apply_impulse(&mut self, step: f64) {
         for (v, f) in self.state.modal_velocity.iter_mut().zip(&self.forces.modal) {
             *v += step * f;
         }
@@ -228,7 +228,7 @@ impl<'a> SealSeatRun<'a> {
                 .zip(&amplitude)
                 .map(|(shape, a)| a * shape[3 * i..3 * i + 3].iter().map(|s| s * s).sum::<f64>().sqrt())
                 .sum();
-            let (ball, moved, velocity) = self.partner(candidate);
+            let (ball, moved, velocity) = self.contact_body(candidate);
             let from = self.system.balls[ball].centre + moved - candidate.place;
             let square = velocity.norm_squared();
             let nearest = if square > 0.0 { (-from.dot(&velocity) / square).max(0.0) } else { 0.0 };
@@ -237,11 +237,11 @@ impl<'a> SealSeatRun<'a> {
     }
 
     /// Number of the ball a candidate meets, its displacement and velocity.
-    fn partner(&self, candidate: &super::Candidate) -> (usize, Vector3<f64>, Vector3<f64>) {
+    fn contact_body(&self, candidate: &super::Candidate) -> (usize, Vector3<f64>, Vector3<f64>) {
         let state = &self.state;
-        match candidate.partner {
-            super::Partner::Sphere => (0, in_plane(state.sphere), in_plane(state.sphere_velocity)),
-            super::Partner::Tip(tip) => {
+        match candidate.contact_body {
+            super::ContactBody::Sphere => (0, in_plane(state.sphere), in_plane(state.sphere_velocity)),
+            super::ContactBody::Tip(tip) => {
                 (1 + tip, in_plane([0.0, state.actuator]), in_plane([0.0, state.actuator_velocity]))
             }
         }
@@ -294,7 +294,7 @@ impl Stepper for SealSeatRun<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::nodes::{Ball, Nodes};
-    use super::super::{Candidate, Partner};
+    use super::super::{Candidate, ContactBody};
     use super::*;
     use crate::material::Relaxation;
     use std::f64::consts::PI;
@@ -317,7 +317,7 @@ mod tests {
             candidates: vec![Candidate {
                 node: 0,
                 place,
-                partner: Partner::Tip(0),
+                contact_body: ContactBody::Tip(0),
                 offset: 0.0,
                 right_flank: false,
             }],

@@ -35,7 +35,7 @@ use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary};
 use crate::scene::{Model, Scene};
 
 pub use body::{SeatBody, SeatMesh, Watch, supports};
-pub use candidates::{Candidate, Partner, Zones, candidates};
+pub use candidates::{Candidate, ContactBody, Zones, candidates};
 pub use model::{DEFAULT_TOLERANCE, SeatModel, quantities};
 pub use results::{CURVES, SeatCurves, SeatQuantities};
 pub use scene::{Actuator, ContactRing, Notch, SealSeat, Seat, SeatedSphere, SphereBody};

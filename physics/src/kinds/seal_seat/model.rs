@@ -12,7 +12,7 @@ use super::system::System;
 use super::truncation;
 use crate::body::cache::Cache;
 use crate::dynamics::StopReason;
-use crate::dynamics::ledger_check;
+use crate::dynamics::balance_check;
 use crate::error::{Error, Result};
 use crate::kinds::flight;
 use crate::kinds::{Kind as _, SeriesModel};
@@ -193,7 +193,7 @@ impl SeatModel {
     /// it.
     ///
     /// # Errors
-    /// As [`integrate`] and [`ledger_check`]; [`Error::Solver`] if the tolerance can't be reached.
+    /// As [`integrate`] and [`balance_check`]; [`Error::Solver`] if the tolerance can't be reached.
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let started = Instant::now();
         let (result, _) = self.converged(tolerance)?;
@@ -243,7 +243,7 @@ impl SeatModel {
     /// As [`SeatModel::run`], [`Error::Solver`] if the run is cut during a contact.
     pub fn point(&self, tolerance: f64) -> Result<Point<SeatQuantities>> {
         let (result, _) = self.converged(tolerance)?;
-        ledger_check(result.energy_residual, result.momentum_residual, tolerance)?;
+        balance_check(result.energy_residual, result.momentum_residual, tolerance)?;
         if result.stop == StopReason::Cut {
             return Err(Error::Solver(CUT.into()));
         }
@@ -263,7 +263,7 @@ impl SeatModel {
         let step = result.time / result.tally.steps as f64;
         let error = truncation::estimate(result, &self.integrate_of(&self.half, step, false)?);
         warnings.extend(truncation::warning(error, self.system.omega.len()));
-        warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
+        warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if result.stop == StopReason::Cut {
             table = table.cut();
             warnings.push(CUT.into());

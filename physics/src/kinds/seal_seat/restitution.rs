@@ -1,7 +1,7 @@
 //! Newton's coefficient of restitution of a seat: the sphere falls into it along its axis, and its model says what comes back.
 
 use super::SeatModel;
-use super::candidates::Partner;
+use super::candidates::ContactBody;
 use super::integrate::{Options, integrate_from};
 use super::system::{State, System};
 use crate::error::{Error, Result};
@@ -43,7 +43,8 @@ impl SeatModel {
             ..system.start()
         };
         let result = integrate_from(system, start, &Options { step, end_time: None, history: false })?;
-        let of_sphere = system.candidates.iter().filter(|candidate| candidate.partner == Partner::Sphere);
+        let of_sphere =
+            system.candidates.iter().filter(|candidate| candidate.contact_body == ContactBody::Sphere);
         let zone = of_sphere.map(|candidate| candidate.offset).fold(0.0, f64::max);
         if result.tally.reach[0] >= zone {
             return Err(Error::Solver(format!(

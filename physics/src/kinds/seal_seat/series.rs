@@ -6,7 +6,7 @@ use super::candidates::Zones;
 use super::model::SeatModel;
 use super::shape;
 use crate::body::cache::Cache;
-use crate::body::kept::Kept;
+use crate::body::memo::MemoList;
 use crate::body::solid::TetMesh;
 use crate::error::Result;
 use crate::kinds::{Series, SeriesModel};
@@ -19,7 +19,7 @@ pub struct SeatSeries {
     first: SealSeat,
     mesh: SeatMesh,
     nodes: Arc<TetMesh>,
-    made: Kept<Made>,
+    made: MemoList<Made>,
 }
 
 /// A seat's body.
@@ -41,7 +41,7 @@ impl SeatSeries {
     /// [`crate::Error::Scene`] for another kind of scene, [`crate::Error::Solver`] if the mesh is unusable.
     pub fn new(scene: &Scene, mesh: &SeatMesh) -> Result<Self> {
         let first = scene.seal_seat()?.clone();
-        Ok(Self { nodes: mesh.read()?, first, mesh: mesh.clone(), made: Kept::default() })
+        Ok(Self { nodes: mesh.read()?, first, mesh: mesh.clone(), made: MemoList::default() })
     }
 
     /// `model` of `scene` on the mesh as it follows its dimensions.
@@ -84,7 +84,7 @@ impl SeatSeries {
 }
 
 impl Series for SeatSeries {
-    fn is_dear(&self) -> bool {
+    fn is_expensive(&self) -> bool {
         true
     }
 

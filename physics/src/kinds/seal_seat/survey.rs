@@ -1,6 +1,6 @@
 //! Which candidates are watched from one look at all of them to the next.
 
-use super::accumulate::{add_modes, yield_under};
+use super::accumulate::{add_modes, deform_under};
 use super::contact::ContactProblem;
 use super::nodes::Ball;
 use nalgebra::Vector3;
@@ -31,7 +31,7 @@ impl ContactProblem<'_> {
         if let Some(traces) = &self.loads.traces {
             self.push.extend_from_slice(traces.forces());
         }
-        yield_under(&mut self.displaced, 0..n, |j| nodes.column(j), &self.push);
+        deform_under(&mut self.displaced, 0..n, |j| nodes.column(j), &self.push);
         self.push.truncate(loaded);
         if self.loads.traces.is_some() {
             let square = |i: usize| (0..3).map(|c| self.displaced[c * n + i].powi(2)).sum::<f64>();
@@ -41,15 +41,15 @@ impl ContactProblem<'_> {
         let mut survey = Survey { missed: false, needed: 0.0 };
         let mut active = 0;
         for i in 0..n {
-            let touches = self.loads.active.get(active) == Some(&i);
-            active += usize::from(touches);
+            let in_contact = self.loads.active.get(active) == Some(&i);
+            active += usize::from(in_contact);
             let ball = &balls[nodes.ball[i]];
             let displaced = Vector3::from_fn(|c, _| self.displaced[c * n + i]);
             let distance = (nodes.place[i] + displaced - ball.centre).norm();
-            let gap = if touches { 0.0 } else { distance - ball.radius };
+            let gap = if in_contact { 0.0 } else { distance - ball.radius };
             let passed = !self.watch.contains(i) && gap < -self.closed;
             survey.missed |= passed;
-            if touches || passed {
+            if in_contact || passed {
                 survey.needed = survey.needed.max(self.surveyed[i]);
             }
             self.surveyed[i] = gap;
@@ -70,7 +70,7 @@ impl ContactProblem<'_> {
             self.chosen.sort_by(|a, b| self.surveyed[*a].total_cmp(&self.surveyed[*b]));
             self.watch.choose(self.nodes, &self.chosen);
         }
-        self.watch.yield_under(self.nodes, &self.push, 0..self.watch.len());
+        self.watch.deform_under(self.nodes, &self.push, 0..self.watch.len());
         if let Some(traces) = &self.loads.traces {
             self.watch.remember(self.nodes, traces.forces());
         }

@@ -3,7 +3,7 @@
 //! Half the bodies (y >= 0) with half the rigid masses; whoever reports doubles forces, impulses and energies.
 
 use super::SealSeat;
-use super::candidates::{Candidate, Partner, on_half_space};
+use super::candidates::{Candidate, ContactBody, on_half_space};
 use super::contact::ContactProblem;
 use super::nodes::{Ball, Nodes};
 use super::survey::Survey;
@@ -63,9 +63,9 @@ impl System {
                 .iter()
                 .map(|&x| Ball { centre: Vector3::new(x, 0.0, -radius), radius }),
         );
-        let ball = |candidate: &Candidate| match candidate.partner {
-            Partner::Sphere => 0,
-            Partner::Tip(tip) => 1 + tip,
+        let ball = |candidate: &Candidate| match candidate.contact_body {
+            ContactBody::Sphere => 0,
+            ContactBody::Tip(tip) => 1 + tip,
         };
         let place = candidates.iter().map(|c| c.place).collect();
         Ok(Self {
@@ -160,13 +160,13 @@ impl Forces {
             *sum += shape[3 * i] * f[0] + shape[3 * i + 1] * f[1] + shape[3 * i + 2] * f[2];
         }
         self.seat += f[2];
-        match candidate.partner {
-            Partner::Sphere => {
+        match candidate.contact_body {
+            ContactBody::Sphere => {
                 self.sphere[0] -= f[0];
                 self.sphere[1] -= f[2];
                 self.flanks[usize::from(candidate.right_flank)] += force;
             }
-            Partner::Tip(_) => self.actuator -= f[2],
+            ContactBody::Tip(_) => self.actuator -= f[2],
         }
     }
 }
@@ -205,9 +205,9 @@ impl<'a> Workspace<'a> {
         for &i in self.contact.active() {
             let (normal, force) = (self.contact.normal(i), self.contact.force(i));
             forces.add(system, i, normal, force);
-            let partner = usize::from(system.candidates[i].partner != Partner::Sphere);
+            let contact_body = usize::from(system.candidates[i].contact_body != ContactBody::Sphere);
             if force > 0.0 {
-                forces.reach[partner] = forces.reach[partner].max(system.candidates[i].offset);
+                forces.reach[contact_body] = forces.reach[contact_body].max(system.candidates[i].offset);
             }
         }
         if !self.contact.active().is_empty() {
@@ -223,9 +223,9 @@ impl<'a> Workspace<'a> {
         let [x, z] = forces.sphere.map(|f| f / system.sphere_mass);
         let actuator = forces.actuator / system.actuator_mass;
         let opening = |i: usize, normal: Vector3<f64>| {
-            let mut a = match system.candidates[i].partner {
-                Partner::Sphere => Vector3::new(-x, 0.0, -z),
-                Partner::Tip(_) => Vector3::new(0.0, 0.0, -actuator),
+            let mut a = match system.candidates[i].contact_body {
+                ContactBody::Sphere => Vector3::new(-x, 0.0, -z),
+                ContactBody::Tip(_) => Vector3::new(0.0, 0.0, -actuator),
             };
             for (q, shape) in accelerations.iter().zip(&system.participation) {
                 a.iter_mut().zip(&shape[3 * i..]).for_each(|(a, s)| *a += q * s);

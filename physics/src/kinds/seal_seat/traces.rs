@@ -61,9 +61,9 @@ impl Traces {
         self.before.extend_from_slice(push);
     }
 
-    /// Books the step that ends with the forces `push` and in which candidates yielded further as `yielded` has it, in m.
-    pub(super) fn book(&mut self, push: &[Push], yielded: impl Fn(usize) -> Vector3<f64>) {
+    /// Books the step that ends with the forces `push` and in which candidates yielded further as `deformation` has it, in m.
+    pub(super) fn book(&mut self, push: &[Push], deformation: impl Fn(usize) -> Vector3<f64>) {
         let forces = self.before.iter().chain(push);
-        self.work += 0.5 * forces.map(|(candidate, force)| force.dot(&yielded(*candidate))).sum::<f64>();
+        self.work += 0.5 * forces.map(|(candidate, force)| force.dot(&deformation(*candidate))).sum::<f64>();
     }
 }

@@ -1,6 +1,6 @@
 //! The candidates that are watched, side by side in memory.
 
-use super::accumulate::{add_modes, yield_under};
+use super::accumulate::{add_modes, deform_under};
 use super::nodes::{Ball, Nodes};
 use super::traces::Push;
 use nalgebra::Vector3;
@@ -29,7 +29,7 @@ pub(super) struct Watch {
     /// From the balls' centres to the candidates without the residual's part in m. Shape (3, w).
     base: Vec<f64>,
     /// Displacements by the residual in m. Shape (3, w).
-    yielding: Vec<f64>,
+    deformation: Vec<f64>,
     /// What forces of the past still displace, and the sum of both before the present step, in m. Shape (3, w), of a body that relaxes.
     remembered: Vec<f64>,
     before: Vec<f64>,
@@ -49,7 +49,7 @@ impl Watch {
             columns: Vec::new(),
             gathered: vec![NONE; n],
             base: Vec::with_capacity(3 * n),
-            yielding: Vec::with_capacity(3 * n),
+            deformation: Vec::with_capacity(3 * n),
             remembered: Vec::new(),
             before: Vec::new(),
             unit: Vec::with_capacity(3 * n),
@@ -78,8 +78,8 @@ impl Watch {
         self.columns.clear();
         self.gathered.fill(NONE);
         self.base.resize(3 * w, 0.0);
-        self.yielding.clear();
-        self.yielding.resize(3 * w, 0.0);
+        self.deformation.clear();
+        self.deformation.resize(3 * w, 0.0);
         self.remembered.clear();
         self.before.clear();
         self.unit.resize(3 * w, 0.0);
@@ -128,11 +128,11 @@ impl Watch {
     }
 
     /// Lets the residual yield in the slots `part` under forces in N on watched candidates.
-    pub fn yield_under(&mut self, nodes: &Nodes, push: &[Push], part: Range<usize>) {
+    pub fn deform_under(&mut self, nodes: &Nodes, push: &[Push], part: Range<usize>) {
         push.iter().for_each(|(j, _)| self.gather(nodes, *j));
         let (size, columns) = (9 * self.len(), &self.columns);
         let column = |j: usize| &columns[self.gathered[j] * size..][..size];
-        yield_under(&mut self.yielding, part, column, push);
+        deform_under(&mut self.deformation, part, column, push);
     }
 
     /// Lets the residual yield under `forces` in N of the past.
@@ -144,7 +144,7 @@ impl Watch {
         let (w, columns) = (self.len(), &self.columns);
         self.remembered.resize(3 * w, 0.0);
         let column = |j: usize| &columns[self.gathered[j] * 9 * w..][..9 * w];
-        yield_under(&mut self.remembered, 0..w, column, forces);
+        deform_under(&mut self.remembered, 0..w, column, forces);
     }
 
     /// Moves the candidates on by what is remembered.
@@ -153,16 +153,16 @@ impl Watch {
     }
 
     /// Keeps what the residual yields by now.
-    pub fn keep_yielded(&mut self) {
+    pub fn keep_deformation(&mut self) {
         self.before.clear();
-        self.before.extend(self.yielding.iter().zip(&self.remembered).map(|(now, past)| now + past));
+        self.before.extend(self.deformation.iter().zip(&self.remembered).map(|(now, past)| now + past));
     }
 
-    /// Displacement in m of the watched candidate `i` by the residual since [`Watch::keep_yielded`], all of it if nothing was kept.
-    pub fn yielded_further(&self, i: usize) -> Vector3<f64> {
+    /// Displacement in m of the watched candidate `i` by the residual since [`Watch::keep_deformation`], all of it if nothing was kept.
+    pub fn further_deformation(&self, i: usize) -> Vector3<f64> {
         let (w, slot) = (self.len(), self.slot[i]);
         let at = |entry: usize| {
-            self.yielding[entry] + self.remembered[entry] - self.before.get(entry).unwrap_or(&0.0)
+            self.deformation[entry] + self.remembered[entry] - self.before.get(entry).unwrap_or(&0.0)
         };
         Vector3::from_fn(|c, _| at(c * w + slot))
     }
@@ -172,7 +172,7 @@ impl Watch {
         self.gather(nodes, j);
         let (w, columns) = (self.len(), &self.columns);
         let column = |j: usize| &columns[self.gathered[j] * 9 * w..][..9 * w];
-        yield_under(&mut self.unit, 0..w, column, &[(j, normal)]);
+        deform_under(&mut self.unit, 0..w, column, &[(j, normal)]);
     }
 
     /// n_i^T R_ij n_j in m/N, the displacement of `i` along its `normal`, after [`Watch::under`] for j.
@@ -184,13 +184,13 @@ impl Watch {
     /// Vector in m from the centre of its ball to the watched candidate `i`, and the number of the ball.
     pub fn off_centre(&self, i: usize) -> (Vector3<f64>, usize) {
         let (w, slot) = (self.len(), self.slot[i]);
-        let at = |c, _| self.base[c * w + slot] + self.yielding[c * w + slot];
+        let at = |c, _| self.base[c * w + slot] + self.deformation[c * w + slot];
         (Vector3::from_fn(at), self.ball[slot])
     }
 
     /// Displacement in m of the watched candidate `i` by the residual.
-    pub fn yielded(&self, i: usize) -> Vector3<f64> {
+    pub fn deformation(&self, i: usize) -> Vector3<f64> {
         let (w, slot) = (self.len(), self.slot[i]);
-        Vector3::from_fn(|c, _| self.yielding[c * w + slot])
+        Vector3::from_fn(|c, _| self.deformation[c * w + slot])
     }
 }

@@ -77,17 +77,17 @@ const END_TIME: Field = optional(
     positive(Dimension::TIME),
     "Longest time of a flight without a result; absent = 1 s",
 );
-const SPEED_SCATTER: Field = optional(
+const SPEED_DEVIATION: Field = optional(
     "speed_scatter",
     pure(SHARE),
     "Half width of the range of the launch's speed, relative; absent = 1 %",
 );
-const ANGLE_SCATTER: Field = optional(
+const ANGLE_DEVIATION: Field = optional(
     "angle_scatter",
     not_negative(Dimension::ANGLE),
     "Half width of the range of the launch's angle; absent = 0.5 deg",
 );
-const RESTITUTION_SCATTER: Field =
+const RESTITUTION_DEVIATION: Field =
     optional("restitution_scatter", pure(SHARE), "Half width of the range of the restitution; absent = 0.02");
 
 /// Of a seal seat, whose shape is the chamber's floor.
@@ -105,9 +105,9 @@ pub(crate) static SEAT_FLIGHT: [Field; 12] = [
     FLUID_DENSITY,
     DRAG_COEFFICIENT,
     END_TIME,
-    SPEED_SCATTER,
-    ANGLE_SCATTER,
-    RESTITUTION_SCATTER,
+    SPEED_DEVIATION,
+    ANGLE_DEVIATION,
+    RESTITUTION_DEVIATION,
 ];
 
 /// Behind a plate: over a rocker.
@@ -122,9 +122,9 @@ pub(crate) static PLATE_FLIGHT: [Field; 13] = [
     FLUID_DENSITY,
     DRAG_COEFFICIENT,
     END_TIME,
-    SPEED_SCATTER,
-    ANGLE_SCATTER,
-    RESTITUTION_SCATTER,
+    SPEED_DEVIATION,
+    ANGLE_DEVIATION,
+    RESTITUTION_DEVIATION,
 ];
 
 /// Most samples of a record.

@@ -15,7 +15,7 @@ pub(super) use record::with_record;
 use super::Scene;
 use super::collision::{Collision, Rule, broken};
 use super::tolerances::LANDING_SHARE;
-use crate::flight::{self as physics, Chamber, Field, Scatter, SphereDrag, Vector, Wave};
+use crate::flight::{self as physics, Chamber, Field, LaunchDeviation, SphereDrag, Vector, Wave};
 
 /// A spring as a scene gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,7 +52,7 @@ pub struct Flight {
     /// Time in s after which a flight is given up.
     pub end_time: f64,
     /// The bands of launch and restitution.
-    pub scatter: Scatter,
+    pub deviation: LaunchDeviation,
 }
 
 /// The sphere that flies, and where.

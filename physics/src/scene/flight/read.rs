@@ -2,7 +2,7 @@
 
 use super::{Flight, FlightSpring, Vibration};
 use crate::Result;
-use crate::flight::{Scatter, Vector, Wave};
+use crate::flight::{LaunchDeviation, Vector, Wave};
 use crate::scene::values::{Checked, Node, unknown};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -26,7 +26,7 @@ pub(in crate::scene) fn flight(root: &Node) -> Result<Option<Flight>> {
         friction: node.number("friction")?,
         drag: drag.transpose()?,
         end_time: node.number_or("end_time", 1.0)?,
-        scatter: Scatter {
+        deviation: LaunchDeviation {
             speed: node.number_or("speed_scatter", 0.01)?,
             angle: node.number_or("angle_scatter", 0.5 * PI / 180.0)?,
             restitution: node.number_or("restitution_scatter", 0.02)?,

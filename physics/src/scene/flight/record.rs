@@ -125,30 +125,30 @@ mod tests {
         let of_file = scene("kind = \"record\"\nfile = \"shock.csv\"").unwrap();
         let lists = "kind = \"record\"\ntime = [0, \"1 ms\", \"2 ms\"]\nacceleration = [0, 3, 0]";
         assert_eq!(of_file.vibration, scene(lists).unwrap().vibration);
-        let told = |record: &str| scene(record).unwrap_err().to_string();
+        let message = |record: &str| scene(record).unwrap_err().to_string();
         // what is written anew elsewhere takes the record with it
         scene("kind = \"record\"\nfile = \"shock.csv\"").unwrap();
         let template = Template::read(folder.path().join("shaken.toml")).unwrap();
         let speed = template.field("actuator.speed").unwrap();
         let elsewhere = template.text_with("faster", &[(&speed, 2.0)]).unwrap();
         assert_eq!(Scene::parse("nowhere/else.toml", &elsewhere).unwrap().vibration, of_file.vibration);
-        let still = told("kind = \"record\"\ntime = [0, 1]\nacceleration = [0, 0]");
+        let still = message("kind = \"record\"\ntime = [0, 1]\nacceleration = [0, 0]");
         assert!(still.contains("`vibration.acceleration` is 0 m/s^2 throughout"), "{still}");
-        let both = told(&format!("{lists}\nfile = \"shock.csv\""));
+        let both = message(&format!("{lists}\nfile = \"shock.csv\""));
         assert!(both.contains("one too many"), "{both}");
-        let missing = told("kind = \"record\"\nfile = \"other.csv\"");
+        let missing = message("kind = \"record\"\nfile = \"other.csv\"");
         assert!(
             missing.contains("`vibration.file` is \"other.csv\"") && missing.contains("read"),
             "{missing}"
         );
         std::fs::write(folder.path().join("back.csv"), "time,acceleration\n0,0\n2,1\n1,0\n").unwrap();
-        let back = told("kind = \"record\"\nfile = \"back.csv\"");
+        let back = message("kind = \"record\"\nfile = \"back.csv\"");
         assert!(back.contains("ascend"), "{back}");
     }
 
     #[test]
-    fn what_is_no_record_is_told_with_its_line() {
-        for (text, told) in [
+    fn an_invalid_record_is_reported_with_its_line() {
+        for (text, expected) in [
             ("", "line 1: there is no column `time`"),
             ("time,force\n0,1", "there is no column `acceleration`"),
             ("time [mm],acceleration\n0,1", "column `time`: `mm` is the unit of something else"),
@@ -160,7 +160,7 @@ mod tests {
             ("time,acceleration\n0,NaN", "line 2: `NaN` is not a number"),
         ] {
             let error = samples(text).unwrap_err();
-            assert!(error.contains(told), "{text:?}: {error}");
+            assert!(error.contains(expected), "{text:?}: {error}");
         }
         assert!(text_of(Path::new("/nowhere/shock.csv")).unwrap_err().contains("can't be read"));
         assert!(text_of(Path::new("/")).unwrap_err().contains("no file"));

@@ -139,8 +139,8 @@ impl Uncertainty {
     pub fn groups(&self) -> Vec<Vec<usize>> {
         let mut of: Vec<usize> = (0..self.inputs.len()).collect();
         for Correlation { between: [a, b], .. } in &self.correlations {
-            let (kept, merged) = (of[*a].min(of[*b]), of[*a].max(of[*b]));
-            of.iter_mut().filter(|group| **group == merged).for_each(|group| *group = kept);
+            let (first, merged) = (of[*a].min(of[*b]), of[*a].max(of[*b]));
+            of.iter_mut().filter(|group| **group == merged).for_each(|group| *group = first);
         }
         let members = |k: usize| (0..of.len()).filter(|i| of[*i] == k).collect::<Vec<_>>();
         (0..of.len()).map(members).filter(|group| !group.is_empty()).collect()
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn scatter_moves_with_the_nominal_value() {
+    fn distributions_move_with_the_nominal_value() {
         let relative = input(2.0, Distribution::Normal(Spread::Relative(0.01))).about(4.0);
         assert_eq!(relative.standard_deviation(), 0.04);
         let bounds = input(2.0, Distribution::Uniform { low: 1.5, high: 2.25 }).about(4.0);

@@ -152,13 +152,13 @@ impl Valve {
         let mesh = mesh_to_follow(template.scene(), None)?;
         let fields = demonstrator.tolerances.iter().map(|(field, _)| template.field(field));
         let fields = fields.collect::<Result<Vec<Field>>>()?;
-        let scatters = |(field, (name, share)): (&Field, &(&str, f64))| UncertainInput {
+        let uncertain = |(field, (name, share)): (&Field, &(&str, f64))| UncertainInput {
             field: (*name).to_owned(),
             unit: field.unit(),
             nominal: template.number(field).unwrap_or(f64::NAN),
             distribution: Distribution::Normal(Spread::Relative(*share)),
         };
-        let inputs = fields.iter().zip(demonstrator.tolerances).map(scatters).collect();
+        let inputs = fields.iter().zip(demonstrator.tolerances).map(uncertain).collect();
         let uncertainty = Uncertainty { inputs, correlations: Vec::new() };
         let inputs = Inputs::new(&uncertainty, SEED)
             .ok_or_else(|| Error::Internal("independent inputs have a correlation".into()))?;

@@ -55,7 +55,7 @@ impl Presentation for Plate {
         &PANELS
     }
 
-    fn curves_told(&self) -> &'static str {
+    fn curves_caption(&self) -> &'static str {
         "Displacement, velocity and contact force of outer body, plate and inner body, signed along z (from the inner to the \
          outer side; forces positive in compression)."
     }

@@ -118,7 +118,7 @@ pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
         (0.0, angle) => format!(", at {}", measure(angle, "rad")),
         (offset, angle) => format!(", {} off-centre, at {}", length(offset), measure(angle, "rad")),
     };
-    let mut told = vec![
+    let mut facts = vec![
         (
             "outer".to_owned(),
             format!("{}, {}{aside}", of_body(&outer.shape, &outer.material), measure(outer.speed, "m/s")),
@@ -136,13 +136,13 @@ pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
     ];
     if let Some(fluid) = &scene.fluid {
         let viscosity = short(1e3 * fluid.viscosity);
-        told.push((
+        facts.push((
             "fluid".to_owned(),
             format!("viscosity {viscosity} mPa s, density {} kg/m³", short(fluid.density)),
         ));
     }
-    told.extend(materials([&plate.material, &outer.material, &inner.material]));
-    told
+    facts.extend(materials([&plate.material, &outer.material, &inner.material]));
+    facts
 }
 
 fn of_body(shape: &Shape, material: &Material) -> String {

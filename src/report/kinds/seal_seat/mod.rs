@@ -73,7 +73,7 @@ impl Presentation for Seat {
         &PANELS
     }
 
-    fn curves_told(&self) -> &'static str {
+    fn curves_caption(&self) -> &'static str {
         "Displacement and velocity along x and z, and contact forces, of sphere and actuator; z points away from the \
          actuator, forces are magnitudes."
     }

@@ -181,7 +181,7 @@ pub(super) fn measures(scene: &SealSeat) -> Vec<(String, String)> {
     let tips: Vec<String> = actuator.tip_positions.iter().map(|x| length(*x)).collect();
     let notch =
         seat.notch.map(|n| format!("; notch {} wide, floor at z = {}", length(n.width), length(n.floor)));
-    let mut told = vec![
+    let mut facts = vec![
         (
             "sphere".to_owned(),
             format!(
@@ -226,8 +226,8 @@ pub(super) fn measures(scene: &SealSeat) -> Vec<(String, String)> {
             ),
         ),
     ];
-    told.extend(materials([&seat.material, &sphere.material]));
-    told
+    facts.extend(materials([&seat.material, &sphere.material]));
+    facts
 }
 
 #[cfg(test)]
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn the_hollow_touches_the_sphere_along_the_cone_and_nowhere_deeper() {
+    fn the_hollow_meets_the_sphere_along_the_cone_and_nowhere_deeper() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/seal-seat.toml");
         let scene = Scene::read(path).expect("scene");
         let scene = scene.seal_seat().expect("seal seat");

@@ -82,18 +82,18 @@ fn percent(share: f64) -> String {
 fn pictures(scene: &Scene, summary: &FlightSummary) -> Markup {
     let Ok((setup, landscape)) = flight_of(scene, summary.restitution) else { return html! {} };
     let flight = fly(&setup, &landscape, &summary.launch, true);
-    let Some(scatter) = scene.flight.as_ref().map(|flight| flight.scatter) else { return html! {} };
+    let Some(deviation) = scene.flight.as_ref().map(|flight| flight.deviation) else { return html! {} };
     let shaken =
         scene.vibration.as_ref().and_then(|vibration| vibration_chart(&setup, &landscape, vibration));
     html! {
         figure {
-            (section(&setup, &flight, &summary.launch, scatter.angle))
+            (section(&setup, &flight, &summary.launch, deviation.angle))
             (landscape_picture(&setup, &landscape, &summary.launch))
             figcaption { "The chamber in section with the path of the sphere's centre until its seat is certain, the seats (dashed) and the band of the launch's \
                 angle. Below: the least energy with which the sphere can be at x, its saddle, and the energy of the launch (dashed)." }
         }
         figure {
-            (PreEscaped(map_picture(&setup, &landscape, summary, &scatter)))
+            (PreEscaped(map_picture(&setup, &landscape, summary, &deviation)))
             figcaption { "Outcome over speed and angle of the release (ring: this release). Below: releases within the range of the share above." }
         }
         @if let Some(chart) = shaken {
@@ -107,7 +107,7 @@ fn pictures(scene: &Scene, summary: &FlightSummary) -> Markup {
 }
 
 /// The chamber up to what the path reaches.
-fn section(setup: &Setup, flight: &Flight, launch: &Launch, scatter: f64) -> Markup {
+fn section(setup: &Setup, flight: &Flight, launch: &Launch, deviation: f64) -> Markup {
     let [low, high] = setup.chamber.columns().map(|x| x * (1.0 + setup.radius / x.abs().max(1e-12)));
     let highest = flight.path.iter().map(|state| state.place.y).fold(setup.chamber.seats()[0].y, f64::max);
     let top = (highest + 1.2 * setup.radius).min(setup.chamber.ceiling() + setup.radius);
@@ -125,7 +125,7 @@ fn section(setup: &Setup, flight: &Flight, launch: &Launch, scatter: f64) -> Mar
     };
     let drawing = html! {
         polygon.fig-hollow points=(scale.points(&corners)) stroke="#9a7f3c" stroke-width="1.5" {}
-        @for side in [-1.0, 1.0] { polyline points=(scale.points(&ray(launch.angle + side * scatter))) fill="none" stroke="#777" stroke-width="1" {} }
+        @for side in [-1.0, 1.0] { polyline points=(scale.points(&ray(launch.angle + side * deviation))) fill="none" stroke="#777" stroke-width="1" {} }
         @for seat in seats {
             circle cx=(x2(scale.x(seat.x))) cy=(x2(scale.z(seat.y))) r=(x2(setup.radius * factor)) fill="none" stroke="#777" stroke-dasharray="4 3" {}
         }
@@ -151,13 +151,13 @@ fn landscape_picture(setup: &Setup, landscape: &Landscape, launch: &Launch) -> M
         .map(|(at, energy)| format!("{},{}", x2(x(*at)), x2(y(*energy))))
         .collect();
     let saddle = landscape.saddle;
-    let told = |energy: f64| with_unit(energy, prefixed("J", energy), 3);
+    let shown = |energy: f64| with_unit(energy, prefixed("J", energy), 3);
     let drawing = html! {
         polyline points=(points.join(" ")) fill="none" stroke="currentColor" stroke-width="1.5" {}
         line x1=(MARGIN) x2=(WIDTH - MARGIN) y1=(x2(y(kinetic))) y2=(x2(y(kinetic))) stroke="#009e73" stroke-dasharray="6 4" {}
-        text x=(WIDTH - MARGIN) y=(x2(y(kinetic) - 5.0)) text-anchor="end" { "launch " (told(kinetic)) }
+        text x=(WIDTH - MARGIN) y=(x2(y(kinetic) - 5.0)) text-anchor="end" { "launch " (shown(kinetic)) }
         circle cx=(x2(x(saddle.x))) cy=(x2(y(saddle.energy))) r="4" fill="#d55e00" {}
-        text x=(x2(x(saddle.x) + 8.0)) y=(x2(y(saddle.energy) - 6.0)) { "saddle " (told(saddle.energy)) }
+        text x=(x2(x(saddle.x) + 8.0)) y=(x2(y(saddle.energy) - 6.0)) { "saddle " (shown(saddle.energy)) }
     };
     Svg::new("Energy landscape", [WIDTH, LANDSCAPE], Theme::Inline).around(&drawing)
 }

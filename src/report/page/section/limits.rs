@@ -42,14 +42,14 @@ pub(crate) fn limits_html(comparison: &SceneComparison) -> Markup {
 /// Up to which speed a model's contacts stay elastic, where it knows.
 fn elastic_limit(model: &Summary) -> Markup {
     let Some(limit) = &model.elastic_limit else { return html! {} };
-    let told = |speed: Option<f64>| {
+    let shown = |speed: Option<f64>| {
         speed.map_or("at no speed found".into(), |speed| {
             format!("up to {}", with_unit(speed, prefixed("m/s", speed), 3))
         })
     };
     html! {
         p { "Elastic limit, model " (model.model.as_deref().unwrap_or_default()) ": nothing yields in the outer contact "
-            (told(limit.outer)) ", in the inner one " (told(limit.inner)) ", of the outer body's speed." }
+            (shown(limit.outer)) ", in the inner one " (shown(limit.inner)) ", of the outer body's speed." }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::format::{prefixed, significant, with_unit, words};
 use crate::kinds::KINDS;
-use crate::measured::{AlignedRecord, Measured, Partner};
+use crate::measured::{AlignedRecord, Measured, MeasuredComparison};
 use crate::plot::{ChartPanel, Series, chart};
 use crate::report::page::html::{detailed, scrolled};
 use crate::report::page::prose::prose;
@@ -23,7 +23,7 @@ pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
     let points =
         impacts.filter_map(|(k, record)| Some((k as f64 + 1.0, 100.0 * record.efficiency?))).collect();
     let last = measured.records.len() as f64;
-    let level = |partner: &Partner| Series {
+    let level = |partner: &MeasuredComparison| Series {
         name: if partner.partner == "reference" { "FE".into() } else { format!("model {}", partner.partner) },
         points: partner.efficiency.map_or_else(Vec::new, |own| vec![(1.0, 100.0 * own), (last, 100.0 * own)]),
         ..Series::default()
@@ -119,7 +119,7 @@ fn metrics(measured: &Measured) -> Rows {
 fn validation(measured: &Measured) -> Option<Rows> {
     let heading = ["partner", "E", "u_val", "u_num", "u_input", "u_D", "shows", "area", "above, below"];
     let points = |value: f64| format!("{} points", significant(100.0 * value, 3));
-    let row = |partner: &Partner| {
+    let row = |partner: &MeasuredComparison| {
         let of = partner.validation.as_ref()?;
         let known = |u: Option<f64>| u.map_or("–".into(), points);
         Some(vec![
@@ -150,10 +150,10 @@ pub(crate) fn sentence(measured: &Measured) -> String {
     };
     let mean = significant(100.0 * series.mean, 4);
     match series.standard_deviation {
-        Some(scatter) => {
-            let scatter = significant(100.0 * scatter, 2);
+        Some(deviation) => {
+            let deviation = significant(100.0 * deviation, 2);
             format!(
-                "Measured efficiency of {} impacts: mean {mean} %, standard deviation {scatter} points.",
+                "Measured efficiency of {} impacts: mean {mean} %, standard deviation {deviation} points.",
                 series.count
             )
         }

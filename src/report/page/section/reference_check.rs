@@ -9,7 +9,7 @@ use maud::{Markup, html};
 pub(crate) fn reference_check_html(check: Option<&ReferenceCheck>) -> Markup {
     let Some(check) = check else { return html! {} };
     html! {
-        p.soft { (told(check)) }
+        p.soft { (in_words(check)) }
         (scrolled("Reference and another program", &html! { table.reference-check {
             thead { tr {
                 th scope="col" { "quantity" } th scope="col" { "reference" } th scope="col" { "± (95 %)" }
@@ -45,7 +45,7 @@ fn said(verdict: BandVerdict) -> &'static str {
     }
 }
 
-fn told(check: &ReferenceCheck) -> String {
+fn in_words(check: &ReferenceCheck) -> String {
     format!(
         "The same scene solved by {}, with its own uncertainty (95 %). Two solutions agree if they differ by less than both uncertainties together (root of the sum of squares). Here: {}.",
         check.program,

@@ -4,7 +4,7 @@ use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
 use crate::format::{prefixed, with_unit, words};
 use crate::report::page::html::{named, number, scrolled};
 use crate::report::page::prose::prose;
-use crate::uncertainty::WANTED;
+use crate::uncertainty::DEFAULT_QUANTITIES;
 use crate::uncertainty::validation::{Assessment, Shown, line};
 use maud::{Markup, html};
 
@@ -18,8 +18,8 @@ fn rows(model: &ModelComparison) -> impl Iterator<Item = (&Discrepancy, &Assessm
 }
 
 /// Those that are about what everybody wants to know.
-fn wanted(model: &ModelComparison) -> impl Iterator<Item = (&Discrepancy, &Assessment)> {
-    rows(model).filter(|(row, _)| WANTED.contains(&&*row.quantity))
+fn default_rows(model: &ModelComparison) -> impl Iterator<Item = (&Discrepancy, &Assessment)> {
+    rows(model).filter(|(row, _)| DEFAULT_QUANTITIES.contains(&&*row.quantity))
 }
 
 /// The inputs that make most of `u_input`, with what they make.
@@ -60,7 +60,7 @@ pub(crate) fn validation_html(comparison: &SceneComparison) -> Markup {
                     }
                 } }
             } }))
-            ul.soft { @for (row, of) in wanted(model) { li { (prose(&line(&row.quantity, of))) } } }
+            ul.soft { @for (row, of) in default_rows(model) { li { (prose(&line(&row.quantity, of))) } } }
         }
     }
 }
@@ -97,14 +97,14 @@ pub(crate) fn validation_markdown(comparison: &SceneComparison) -> String {
 /// A line per model and quantity that everybody wants to know.
 pub(crate) fn validation_text(comparison: &SceneComparison) -> String {
     let of_model = |model: &ModelComparison| {
-        wanted(model)
+        default_rows(model)
             .map(|(row, of)| format!("  {}: {}\n", model.model, line(&row.quantity, of)))
             .collect::<String>()
     };
     let measured = comparison.measured.iter().flat_map(|measured| &measured.partners);
-    let of_partners = measured.filter_map(|partner| {
+    let of_comparators = measured.filter_map(|partner| {
         let of = partner.validation.as_ref()?;
         Some(format!("  {} against the measurement: {}\n", partner.partner, line("efficiency", of)))
     });
-    comparison.models.iter().map(of_model).chain(of_partners).collect()
+    comparison.models.iter().map(of_model).chain(of_comparators).collect()
 }

@@ -35,7 +35,7 @@ impl Presentation for Spring {
         &PANELS
     }
 
-    fn curves_told(&self) -> &'static str {
+    fn curves_caption(&self) -> &'static str {
         "Velocities of sphere and mass, and the contact force."
     }
 }

@@ -7,7 +7,7 @@ use crate::dynamics::memory::step_force::StepForce;
 const MAX_ITERATIONS: usize = 60;
 const LEAST_FRACTION: f64 = 1e-4;
 /// What may be missing of the approaches, over the largest: to stop, and where rounding leaves no more.
-const SETTLED: f64 = 1e-13;
+const CONVERGED: f64 = 1e-13;
 const ROUNDING: f64 = 1e-10;
 
 /// Approaches tried for the end of a step.
@@ -54,7 +54,7 @@ impl MemoryStepper<'_> {
         let mut step = self.newton(&best);
         let mut fraction = 1.0;
         for _ in 0..MAX_ITERATIONS {
-            if best.size() <= SETTLED * scale {
+            if best.size() <= CONVERGED * scale {
                 break;
             }
             let x = [best.x[0] - fraction * step[0], best.x[1] - fraction * step[1]];
@@ -80,10 +80,10 @@ impl MemoryStepper<'_> {
         let answer = [0, 1].map(|i| self.bodies.contacts[i].answer(x[i]));
         let [force, slope, taken] = [0, 1, 2].map(|of| answer.map(|answer| answer[of]));
         let (elastic, patch, flexibility) = self.bodies.elastic(self.system, force, patch);
-        let beneath = |i: usize, part: usize| {
+        let elastic_below = |i: usize, part: usize| {
             self.bodies.creep(i, part).deformation(&self.deformed[i][part], elastic[i][part])
         };
-        let bodies = [0, 1].map(|i| x[i] + beneath(i, 0) + beneath(i, 1));
+        let bodies = [0, 1].map(|i| x[i] + elastic_below(i, 0) + elastic_below(i, 1));
         let energy = taken[0] + taken[1] + self.bodies.energy_beyond(self.system, force, patch);
         let moved = [0, 1].map(|i| bodies[i] - self.offset[i] - self.y[i]);
         let acting = step_force.acting([self.force, force], moved, [self.energy, energy]);

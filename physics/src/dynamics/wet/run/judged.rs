@@ -1,24 +1,24 @@
 //! What a solved wet step is wrong by.
 
-use super::{WetStepper, joined};
+use super::{WetStepper, with_start};
 use crate::dynamics::step_bounds::{force_scale, peak_share};
 use crate::dynamics::system::dot;
-use crate::dynamics::wet::touch_between;
+use crate::dynamics::wet::contact_between;
 use crate::numerics::stages::STAGES;
 use std::cell::LazyCell;
 
 /// Share of a step's admissible defect at which its iteration may end, if rounding errors permit.
-const SETTLED: f64 = 1e-3;
+const CONVERGED: f64 = 1e-3;
 
 /// Errors at which the iteration for a step may end.
-pub(super) struct Settled {
+pub(super) struct WetConvergence {
     /// Of the forces, N.
     force: f64,
     /// Of their impulses, N s.
     impulse: f64,
 }
 
-impl Settled {
+impl WetConvergence {
     /// The error of the forces in N in a step of `h` s.
     pub(super) fn in_step(&self, h: f64) -> f64 {
         self.force.min(self.impulse / h)
@@ -27,11 +27,11 @@ impl Settled {
 
 impl WetStepper<'_> {
     /// Errors at which the iteration may end, with the momenta `scale` (see [`super::momentum_scale`]).
-    pub(super) fn settled(&self, scale: [f64; 2]) -> Settled {
+    pub(super) fn converged(&self, scale: [f64; 2]) -> WetConvergence {
         let least = (0..2).map(|i| self.force_scale(i, &[], scale)).fold(f64::INFINITY, f64::min);
-        Settled {
-            force: SETTLED * self.bounds.force_defect * least,
-            impulse: SETTLED * self.defect_bound * scale[1],
+        WetConvergence {
+            force: CONVERGED * self.bounds.force_defect * least,
+            impulse: CONVERGED * self.defect_bound * scale[1],
         }
     }
 
@@ -64,7 +64,7 @@ impl WetStepper<'_> {
     /// [`Self::force_defect`] over what may be.
     pub(super) fn force_excess(&self, defect: [f64; 2], scale: [f64; 2]) -> f64 {
         let excess = |i: usize| {
-            let forces = joined(self.force[i], &self.trial.forces[i]);
+            let forces = with_start(self.force[i], &self.trial.forces[i]);
             let share = peak_share(&forces, self.contacts[i].force_peak);
             defect[i] / (share * self.bounds.force_defect * self.force_scale(i, &forces, scale))
         };
@@ -77,15 +77,15 @@ impl WetStepper<'_> {
     }
 
     /// Impulse, over what may be wrong, of a touch between the points of the step of `h` s just solved.
-    pub(super) fn passed_touch(&self, h: f64, scale: [f64; 2]) -> f64 {
+    pub(super) fn missed_contact(&self, h: f64, scale: [f64; 2]) -> f64 {
         let (system, trial) = (self.wet.system, &self.trial);
         let points = [0, 1].map(|i| {
             let open = self.force[i] == 0.0 && trial.forces[i] == [0.0; STAGES];
-            open.then(|| joined(self.local[i], &trial.local[i]))
+            open.then(|| with_start(self.local[i], &trial.local[i]))
         });
         let forces = LazyCell::new(|| self.wet.generalised(trial));
         let motion = |place: f64| system.modal_approach(&self.motion_at(&forces, place * h, h).0);
-        let largest = touch_between::forces(system, h, [&self.q, &self.v], points, motion);
+        let largest = contact_between::forces(system, h, [&self.q, &self.v], points, motion);
         let missed = |i: usize| largest[i] * h / (scale[i] * self.bounds.kinked);
         missed(0).max(missed(1))
     }

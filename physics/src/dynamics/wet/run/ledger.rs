@@ -1,7 +1,7 @@
 //! What is booked of a wet step: impulses, work and losses.
 
-use super::{WetStepper, joined};
-use crate::dynamics::contact_ledger::work;
+use super::{WetStepper, with_start};
+use crate::dynamics::contact_balance::work;
 use crate::dynamics::integration::FluidAccount;
 use crate::dynamics::system::INNER;
 use crate::dynamics::wet::FluidLoad;
@@ -50,7 +50,7 @@ impl WetStepper<'_> {
         let (system, trial) = (self.wet.system, &self.trial);
         let fluid = self.fluid_in_step(h);
         let contact_work = [0, 1].map(|i| {
-            let approach = joined(self.approach[i], &trial.approach[i]);
+            let approach = with_start(self.approach[i], &trial.approach[i]);
             work(self.collocation, &trial.forces[i], &approach)
         });
         let stored = system.stored_energy(trial.end_force, trial.local.map(|p| p[END]))

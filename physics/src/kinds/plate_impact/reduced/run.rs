@@ -2,10 +2,10 @@
 
 use super::{Point, Reduced};
 use crate::dynamics::StopReason;
-use crate::dynamics::assured;
-use crate::dynamics::contact_ledger::ContactLedger;
+use crate::dynamics::balance_check;
+use crate::dynamics::contact_balance::ContactBalance;
+use crate::dynamics::error_control;
 use crate::dynamics::integration::{Converged, Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
-use crate::dynamics::ledger_check;
 use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
@@ -29,7 +29,7 @@ const MOMENT_LEFT: f64 = 0.01;
 /// Change of the inner body's velocity over the impact speed, in tolerances, below which its results are the integration's error.
 fn unresolved(system: &System, result: &Integration, tolerance: f64) -> Option<String> {
     let change = (result.velocity[1] - system.inner_velocity()).abs();
-    let error = assured::ENOUGH * tolerance * system.speed;
+    let error = error_control::ENOUGH * tolerance * system.speed;
     (result.contacts[1].force_peak > 0.0 && change < error).then(|| {
         format!(
             "the velocity of the inner body changes by {change:.1e} m/s, less than the {error:.1e} m/s that the time integration may be wrong by: its results show no more than that the plate hardly moves it"
@@ -47,7 +47,7 @@ impl Reduced {
     /// time integration.
     ///
     /// # Errors
-    /// As [`crate::dynamics::integrate`] and [`ledger_check`].
+    /// As [`crate::dynamics::integrate`] and [`balance_check`].
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
         let (mut summary, ..) = self.unjudged(tolerance)?;
         Kind.judge(&self.scene, &mut summary, None);
@@ -78,7 +78,7 @@ impl Reduced {
     fn elastic_limit(&self, options: &Options) -> Result<Option<ElasticLimit>> {
         let setup = self.scene.plate_impact()?;
         let materials = setup.materials();
-        let covered = !setup.outer.shape.is_held()
+        let covered = !setup.outer.shape.is_mounted()
             && setup.outer.is_centred()
             && materials.iter().all(|m| m.relaxation.is_empty());
         let limit = |onset: OnsetOfYield| {
@@ -119,22 +119,26 @@ impl Reduced {
         self.solved(tolerance, self.options(tolerance))
     }
 
-    /// As [`Reduced::point`] with all results right to `error`, as [`assured::all_within`] has it, or
+    /// As [`Reduced::point`] with all results right to `error`, as [`error_control::all_within`] has it, or
     /// [`Point::converged`] false.
     ///
     /// # Errors
     /// As [`Reduced::point`].
     pub fn all_within(&self, error: f64) -> Result<Point> {
-        self.solved(error, assured::all_within(error, self.options(error)))
+        self.solved(error, error_control::all_within(error, self.options(error)))
     }
 
     /// The results with `options`, whose ledger balances to `tolerance`.
     fn solved(&self, tolerance: f64, options: Options) -> Result<Point> {
         let options = Options { peak_error: PEAK_ERROR * options.tolerance, ..options };
         let result = self.impacts().all(&options)?.last;
-        ledger_check(result.energy_residual, result.momentum_residual, tolerance.max(result.kept_tolerance))?;
+        balance_check(
+            result.energy_residual,
+            result.momentum_residual,
+            tolerance.max(result.least_tolerance),
+        )?;
         let enough =
-            options.results.unwrap_or(assured::ENOUGH * options.tolerance).max(result.kept_tolerance);
+            options.results.unwrap_or(error_control::ENOUGH * options.tolerance).max(result.least_tolerance);
         Ok(Point {
             quantities: self.of_all_energy(quantities(&self.system, &result)?),
             energy_residual: result.energy_residual,
@@ -204,13 +208,13 @@ impl Reduced {
     }
 
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
-        let (system, tolerance) = (&self.system, tolerance.max(result.kept_tolerance));
+        let (system, tolerance) = (&self.system, tolerance.max(result.least_tolerance));
         let setup = &*self.scene.plate_impact()?.along_normal();
         let end_time = self.scene.run.end_time;
         let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
-        let even_steps = result.kept_tolerance > 0.0;
+        let even_steps = result.least_tolerance > 0.0;
         let unsure =
-            result.error_estimate.filter(|error| !even_steps && *error > assured::ENOUGH * tolerance);
+            result.error_estimate.filter(|error| !even_steps && *error > error_control::ENOUGH * tolerance);
         let mut warnings = scene::doubts(&self.scene);
         warnings.extend(self.warnings.iter().cloned());
         warnings.extend(truncation.warning);
@@ -252,7 +256,7 @@ impl Reduced {
         }
         warnings.extend(unresolved(system, result, tolerance));
         warnings.extend(uncountable(result, tolerance));
-        warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
+        warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if self.scene.plate_impact()?.outer.angle != 0.0 {
             warnings.push(
                 "motion along the plate is omitted by the reduced models; the reference includes it".into(),
@@ -311,7 +315,7 @@ impl Reduced {
 /// Contacts that nearly join, part or touch once more, so that their number may be another.
 fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
     let error = result.error_estimate.unwrap_or(0.0).max(tolerance);
-    let near = |contact: &ContactLedger| contact.least_turn <= assured::ENOUGH * error;
+    let near = |contact: &ContactBalance| contact.least_turn <= error_control::ENOUGH * error;
     let bodies = ["outer", "inner"].into_iter().zip(&result.contacts);
     bodies
         .filter(|(_, contact)| contact.contacts > 0 && near(contact))
@@ -346,7 +350,7 @@ mod tests {
 
     /// A result whose ledger is off says so, and is none if it is far off.
     #[test]
-    fn the_ledger_of_a_run_is_judged() {
+    fn the_balance_of_a_run_is_judged() {
         let text = include_str!("../../../../../tests/fixtures/plate-impact.toml");
         let scene = Scene::parse("plate-impact.toml", text).unwrap();
         let reduced = Reduced::new(&scene, Model::B, None).unwrap();

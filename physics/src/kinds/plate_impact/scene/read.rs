@@ -231,7 +231,7 @@ fn deflection(bender: &Bender, torque: f64) -> f64 {
 const FARTHEST: f64 = 0.9;
 /// Iterations for the deflection from which a bender has its speed at an offset, and their relative change in the end.
 const ITERATIONS: usize = 60;
-const SETTLED: f64 = 1e-13;
+const CONVERGED: f64 = 1e-13;
 
 /// `share` of the deflection at which a bender strikes, for an `offset` in m.
 fn within(share: f64, offset: f64) -> Result<f64> {
@@ -255,7 +255,7 @@ fn strike_at(bender: Bender, offset: f64, speed: f64) -> Result<f64> {
         let next = within(offset / deflection(&bender, speed / release.speed_per_moment), offset)?;
         let change = (next - share).abs();
         share = next;
-        if change <= SETTLED {
+        if change <= CONVERGED {
             break;
         }
     }

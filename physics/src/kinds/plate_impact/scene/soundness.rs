@@ -72,7 +72,7 @@ impl Bodies for PlateImpact {
             },
             Rule {
                 fields: vec!["outer.kind"],
-                holds: elastic || !self.outer.shape.is_held(),
+                holds: elastic || !self.outer.shape.is_mounted(),
                 message:
                     "`outer.kind` is \"bender\" or \"stack\": it is not supported with a plastic or viscoelastic material"
                         .into(),

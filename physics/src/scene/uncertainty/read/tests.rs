@@ -75,7 +75,7 @@ fn correlations_are_of_two_inputs_of_the_table() {
 }
 
 #[test]
-fn what_is_no_distribution_is_told_with_its_place() {
+fn an_invalid_distribution_is_reported_with_its_place() {
     for (table, parts) in [
         (
             "\n\"plate.thicknes\" = \"1 %\"",
@@ -145,7 +145,7 @@ fn a_scene_that_is_uncertain_is_the_same_scene() {
 }
 
 #[test]
-fn a_written_scene_keeps_its_scatter_about_the_new_numbers() {
+fn a_written_scene_keeps_its_distributions_about_the_new_numbers() {
     for table in [
         "plate.thickness = { uniform = [\"1.9 mm\", \"2.2 mm\"] }",
         "\"plate.thickness\" = { uniform = [\"1.9 mm\", \"2.2 mm\"] }",

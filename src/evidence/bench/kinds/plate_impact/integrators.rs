@@ -66,7 +66,7 @@ pub(super) fn run(modes: usize, settings: &Settings, bench: &mut Bench) -> Resul
     }
     let problem = problem(system, (&start, &scale), end_time, &settings.peer_tolerances);
     for (name, command) in peers(settings)? {
-        match ask(command, &problem) {
+        match run_peer(command, &problem) {
             Ok(runs) => {
                 for run in runs {
                     let velocity = run.inner_rate / system.masses[1].sqrt();
@@ -129,7 +129,7 @@ fn problem(
 }
 
 /// All runs of a peer, or why there are none.
-fn ask(mut command: Command, problem: &serde_json::Value) -> std::result::Result<Vec<PeerRun>, String> {
+fn run_peer(mut command: Command, problem: &serde_json::Value) -> std::result::Result<Vec<PeerRun>, String> {
     let mut child = command
         // one core, as this program's integrator
         .envs([("OMP_NUM_THREADS", "1"), ("OPENBLAS_NUM_THREADS", "1")])

@@ -146,13 +146,13 @@ fn claims(courses: &[LossFactorCurve; 4]) -> Vec<Claim> {
         Claim::new(claim, "1", Some(PAPER.0), course.taken(), PAPER.1)
     };
     let difference = ours.taken().zip(theirs.taken()).map(|(ours, theirs)| ours - theirs);
-    let beside = "model C loses as much as the finite elements: difference in efficiency";
+    let claim = "model C loses as much as the finite elements: difference in efficiency";
     let most = "most is lost in the contacts: share of the plate's modes in model C, at most 0.5";
     courses
         .iter()
         .map(two_per_cent)
         .chain([
-            Claim::new(beside.into(), "1", None, difference, CLOSE),
+            Claim::new(claim.into(), "1", None, difference, CLOSE),
             Claim::new(most.into(), "1", None, ours.share_of_plate(), 0.5),
         ])
         .collect()

@@ -160,11 +160,11 @@ fn claims_of(spheres: &str, model: &str, courses: &[EfficiencyCurve]) -> Vec<Cla
     let shown = find(SHOWN);
     let elastic = find(ELASTIC).and_then(EfficiencyCurve::first);
     let share = |top: Option<f64>, bottom: Option<f64>| Some(top? / bottom?);
-    let told = |text: &str| format!("{spheres} spheres, {SHOWN}, model {model}: {text}");
+    let claim = |text: &str| format!("{spheres} spheres, {SHOWN}, model {model}: {text}");
     let (first, steady) = (shown.and_then(EfficiencyCurve::first), shown.and_then(EfficiencyCurve::steady));
     let holds = |text: &str, value: Option<bool>| {
         let value = value.map(|holds| f64::from(u8::from(holds)));
-        Claim::new(told(text), "1", Some(1.0), value, 0.0)
+        Claim::new(claim(text), "1", Some(1.0), value, 0.0)
     };
     let rises = shown.map(|course| {
         let efficiencies: Vec<f64> =

@@ -129,13 +129,13 @@ fn claims_of(spheres: &str, found: &[TestBedResult]) -> Vec<Claim> {
     }
     let mean = found.iter().map(|one| one.elastic).sum::<f64>() / found.len() as f64;
     let squares = found.iter().map(|one| (one.elastic - mean).powi(2)).sum::<f64>();
-    let scatter = (squares / (found.len() - 1) as f64).sqrt();
+    let deviation = (squares / (found.len() - 1) as f64).sqrt();
     let below = "the first impact is below the efficiency without yielding";
     let clearly = "and by more than twice its standard deviation from tolerances, so that Fig. 12 shows it";
     let nearer = "the steady state is nearer to the efficiency without yielding than the first impact";
     vec![
         share(below, &|one| one.first < one.elastic),
-        share(clearly, &|one| one.elastic - one.first > 2.0 * scatter),
+        share(clearly, &|one| one.elastic - one.first > 2.0 * deviation),
         rises,
         share(nearer, &|one| (one.last - one.elastic).abs() < (one.first - one.elastic).abs()),
     ]

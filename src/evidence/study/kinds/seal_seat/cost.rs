@@ -54,8 +54,8 @@ pub fn run(note: &mut Note) -> Result<Study> {
             Cell::Number(off),
             Cell::Number(speed),
         ]);
-        let wanted = format!("{text} design: the reduced run is at least {RATIO} times as fast (1 = yes)");
-        claims.push(Claim::new(wanted, "1", Some(1.0), Some(f64::from(u8::from(ratio >= RATIO))), 0.0));
+        let claim = format!("{text} design: the reduced run is at least {RATIO} times as fast (1 = yes)");
+        claims.push(Claim::new(claim, "1", Some(1.0), Some(f64::from(u8::from(ratio >= RATIO))), 0.0));
     }
     Ok(Study::new(
         "seal-seat-cost",

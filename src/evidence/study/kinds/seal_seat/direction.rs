@@ -42,8 +42,8 @@ struct Direction {
 /// [`Error::Reference`] if a reference is not stored, [`Error::Solver`] if a seat can't be meshed or solved.
 pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
     let store = Store::open(settings.store.as_deref());
-    let (mut rows, mut claims, mut told) = (Vec::new(), Vec::new(), Vec::new());
-    for (design, name, wanted) in DESIGNS {
+    let (mut rows, mut claims, mut sentences) = (Vec::new(), Vec::new(), Vec::new());
+    for (design, name, expected) in DESIGNS {
         let scene = of_project(name)?;
         let [coarse, paper] = [Resolution::Coarse, Resolution::Paper].map(|resolution| {
             note(&format!("{name}: the stored reference's own mesh, {resolution}"));
@@ -54,7 +54,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
         let offset_band = difference_band(coarse, offset, COARSER);
         let angle = meshes.angle + offset;
         let band = meshes.band.hypot(offset_band);
-        told.push(format!(
+        sentences.push(format!(
             "{design} design {:+.2}° ± {:.2}° (meshes ± {:.2}°, reference − reduced {:+.3}° ± {:.3}°)",
             angle / DEGREE,
             band / DEGREE,
@@ -63,7 +63,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
             offset_band / DEGREE
         ));
         let half = |what: &str| format!("{design} design: {what}");
-        claims.push(Claim::new(half("half-width of the band"), "rad", None, Some(band), wanted));
+        claims.push(Claim::new(half("half-width of the band"), "rad", None, Some(band), expected));
         claims.push(Claim::new(
             half("the stored reference's direction, within its own band"),
             "rad",
@@ -77,7 +77,7 @@ pub fn run(settings: &Settings, note: &mut Note) -> Result<Study> {
         format!(
             "Direction of the sphere out of the flexible seal seat: model C on {MESHES} meshes, extrapolated to elements of no \
              size, plus what the finite elements differ by on the mesh of the stored reference: {}. Bands of 95 %.",
-            told.join("; ")
+            sentences.join("; ")
         ),
         "design, element_size, dofs, sphere_angle [rad], sphere_speed [m/s], efficiency",
         rows,

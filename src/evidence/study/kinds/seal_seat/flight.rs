@@ -20,7 +20,7 @@ const SPEED: f64 = 0.01;
 const ANGLE: f64 = 0.5 * std::f64::consts::PI / 180.0;
 const RESTITUTION: f64 = 0.02;
 /// How far first touches may lie apart, in m and s, and amplitudes of shocks, relative.
-const FIRST_TOUCH: [f64; 2] = [1e-9, 1e-9];
+const FIRST_CONTACT: [f64; 2] = [1e-9, 1e-9];
 const AMPLITUDE: f64 = 4e-4;
 /// Restitution of the shocks.
 const OF_SHOCKS: f64 = 0.5;
@@ -154,7 +154,7 @@ fn of_flights(compared: &[ComparedFlight]) -> Vec<Claim> {
     let share = equal as f64 / compared.len() as f64;
     let largest =
         |k: usize| compared.iter().filter_map(|f| f.first_touch).map(|off| off[k].abs()).fold(0.0, f64::max);
-    let touches = compared.iter().filter(|flight| flight.first_touch.is_some()).count();
+    let with_contact = compared.iter().filter(|flight| flight.first_touch.is_some()).count();
     vec![
         Claim::new(
             format!(
@@ -169,18 +169,18 @@ fn of_flights(compared: &[ComparedFlight]) -> Vec<Claim> {
         ),
         Claim::new("share of all flights with another seat".into(), "1", None, Some(1.0 - share), 0.1),
         Claim::new(
-            format!("first contacts of {touches} flights: largest distance"),
+            format!("first contacts of {with_contact} flights: largest distance"),
             "m",
             None,
             Some(largest(0)),
-            FIRST_TOUCH[0],
+            FIRST_CONTACT[0],
         ),
         Claim::new(
-            format!("first contacts of {touches} flights: largest difference in time"),
+            format!("first contacts of {with_contact} flights: largest difference in time"),
             "s",
             None,
             Some(largest(1)),
-            FIRST_TOUCH[1],
+            FIRST_CONTACT[1],
         ),
     ]
 }
@@ -260,7 +260,7 @@ fn compare(improved: &SealSeat, stored: &StoredFlight) -> Result<ComparedFlight>
     let unanimous = sides
         .iter()
         .all(|s| sides.iter().all(|a| sides.iter().all(|e| flown([*s, *a, *e]).ending.seat() == ours)));
-    let first_touch = own.first_touch.zip(stored.found.first_touch).map(|(own, [time, x, z])| {
+    let first_touch = own.first_contact.zip(stored.found.first_touch).map(|(own, [time, x, z])| {
         let distance = (own.place - 1e-3 * Vector::new(x, z)).norm();
         [distance, own.time - 1e-3 * time]
     });

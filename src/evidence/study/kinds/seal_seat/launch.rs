@@ -185,16 +185,16 @@ fn notch_and_impact(
 
 /// What the paper says of the directions, and what follows from the table of notch and impact.
 fn claims(intended: f64, angle: &dyn Fn(&str, &str) -> Option<f64>) -> Vec<Claim> {
-    let held = |ours: Option<bool>| ours.map(|held| f64::from(u8::from(held)));
+    let reached = |ours: Option<bool>| ours.map(|reached| f64::from(u8::from(reached)));
     let missed = |varied: &str, design: &str| {
-        held(angle(design, varied).map(|a| (a - intended).abs() > INTENDED_WITHIN))
+        reached(angle(design, varied).map(|a| (a - intended).abs() > INTENDED_WITHIN))
     };
     vec![
         Claim::new(
             "initial design: the sphere leaves to the wrong side (1 = yes)".into(),
             "1",
             Some(1.0),
-            held(angle("initial", "nothing").map(|a| a < 0.0)),
+            reached(angle("initial", "nothing").map(|a| a < 0.0)),
             0.0,
         ),
         Claim::new(

@@ -284,11 +284,11 @@ fn number(row: &[Cell], column: &str) -> f64 {
 fn claims(rows: &[Vec<Cell>], known: usize) -> Vec<Claim> {
     let mut claims = Vec::new();
     for tolerance in TOLERANCES {
-        let asked = |row: &&Vec<Cell>| number(row, "tolerance") == tolerance;
+        let of_tolerance = |row: &&Vec<Cell>| number(row, "tolerance") == tolerance;
         let percent = 100.0 * tolerance;
         for (what, with_reference) in [("random scenes", false), ("scenes with a reference", true)] {
             let kind = |row: &&Vec<Cell>| (number(row, "scene") < known as f64) == with_reference;
-            let of: Vec<_> = rows.iter().filter(asked).filter(kind).collect();
+            let of: Vec<_> = rows.iter().filter(of_tolerance).filter(kind).collect();
             let promised = of.iter().filter(|row| number(row, "promised") == 1.0);
             let errors: Vec<f64> = promised.map(|row| number(row, "true_error")).collect();
             let decided = errors.iter().filter(|error| !error.is_nan()).count();
@@ -305,7 +305,7 @@ fn claims(rows: &[Vec<Cell>], known: usize) -> Vec<Claim> {
             }
         }
         let measured: Vec<_> =
-            rows.iter().filter(asked).filter(|row| number(row, "cost_ratio").is_finite()).collect();
+            rows.iter().filter(of_tolerance).filter(|row| number(row, "cost_ratio").is_finite()).collect();
         if !measured.is_empty() {
             claims.extend(costs(percent, &measured));
         }

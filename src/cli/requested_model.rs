@@ -10,7 +10,7 @@ use std::str::FromStr;
 
 /// A reduced model, the program's choice, or the programs that the scene names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AskedModel {
+pub enum RequestedModel {
     /// This one.
     Named(Model),
     /// The cheapest that is good enough.
@@ -19,7 +19,7 @@ pub enum AskedModel {
     External,
 }
 
-impl FromStr for AskedModel {
+impl FromStr for RequestedModel {
     type Err = String;
 
     fn from_str(text: &str) -> std::result::Result<Self, String> {
@@ -29,25 +29,25 @@ impl FromStr for AskedModel {
             )
         };
         match text {
-            "auto" => Ok(AskedModel::Auto),
-            "external" => Ok(AskedModel::External),
-            _ => text.parse().map(AskedModel::Named).map_err(unknown),
+            "auto" => Ok(RequestedModel::Auto),
+            "external" => Ok(RequestedModel::External),
+            _ => text.parse().map(RequestedModel::Named).map_err(unknown),
         }
     }
 }
 
-impl std::fmt::Display for AskedModel {
+impl std::fmt::Display for RequestedModel {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            AskedModel::Named(model) => model.fmt(f),
-            AskedModel::Auto => f.write_str("auto"),
-            AskedModel::External => f.write_str("external"),
+            RequestedModel::Named(model) => model.fmt(f),
+            RequestedModel::Auto => f.write_str("auto"),
+            RequestedModel::External => f.write_str("external"),
         }
     }
 }
 
 /// That the scene's programs run where they are compared with something.
-pub(super) fn beside_a_reference() -> Error {
+pub(super) fn needs_a_reference() -> Error {
     Error::Usage("--model external: the scene's programs run in `compare` and `gate`".into())
 }
 
@@ -69,7 +69,7 @@ pub(super) fn within_bounds(error: f64, text: &str) -> std::result::Result<f64, 
 }
 
 /// What was chosen, from what, and why, in lines.
-pub(super) fn told(choice: &Choice) -> String {
+pub(super) fn choice_in_words(choice: &Choice) -> String {
     let percent = |error: Option<f64>| error.map_or("unknown".to_owned(), |e| format!("{:.2} %", 100.0 * e));
     let mut lines = vec![format!(
         "auto, tolerance {:.4} % of {}: estimated error {}; in {:.1} % of random test scenes the true error was within the tolerance",
@@ -96,7 +96,7 @@ pub struct ModelRequest {
     /// Reduced model: A (one mode), B (Kirchhoff plate modes), C (3D elastic modes, residual flexibility), or auto
     /// (the least expensive one whose estimated error is within the tolerance) [default: the scene's, or C]
     #[arg(long)]
-    pub model: Option<AskedModel>,
+    pub model: Option<RequestedModel>,
     /// Number of modes [default: the scene's, or 16 for B and as many as needed for C]
     #[arg(long, value_name = "N")]
     pub modes: Option<usize>,
@@ -120,11 +120,11 @@ impl ModelRequest {
     /// [`Error::Usage`] of what is no model of such a kind.
     pub(super) fn named(&self, scene: &Scene) -> Result<Model> {
         match self.model {
-            Some(AskedModel::Named(model)) => Ok(model),
-            Some(AskedModel::Auto) => {
+            Some(RequestedModel::Named(model)) => Ok(model),
+            Some(RequestedModel::Auto) => {
                 Err(Error::Usage(format!("--model auto: {}", kinds::models_only(scene))))
             }
-            Some(AskedModel::External) => Err(beside_a_reference()),
+            Some(RequestedModel::External) => Err(needs_a_reference()),
             None => {
                 let last = kinds::of(scene).models().last().copied();
                 let found = scene.reduced.model.or(last);

@@ -25,7 +25,7 @@ const MAX_CHOSEN_MODES: usize = 64;
 const WIDEST_PATCH: f64 = 0.5;
 
 /// A model of a scene.
-pub(super) struct Joined {
+pub(super) struct Assembled {
     /// Oscillators and contacts.
     pub(super) system: System,
     /// Frequency in rad/s of the lowest mode left to the residual flexibility of model C.
@@ -37,7 +37,7 @@ pub(super) struct Joined {
 }
 
 /// Which modes of the continuum plate are wanted.
-pub(super) enum Wanted {
+pub(super) enum RequestedModes {
     /// So many.
     Modes(usize),
     /// As many as the error estimate asks for.
@@ -99,9 +99,9 @@ pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize) -> Result<Sys
 }
 
 /// Models A and B with `modes` elastic modes.
-pub(super) fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<Joined> {
+pub(super) fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<Assembled> {
     if setup.outer.offset > 0.0 {
-        return Ok(Joined {
+        return Ok(Assembled {
             system: off_centre_system(setup, modes)?,
             omega_next: f64::INFINITY,
             fluid: None,
@@ -117,8 +117,8 @@ pub(super) fn kirchhoff_plate(
     setup: &PlateImpact,
     plate: ModalBody,
     shapes: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>>,
-) -> Result<Joined> {
-    Ok(Joined {
+) -> Result<Assembled> {
+    Ok(Assembled {
         system: join(setup, plate, [0.0; 2])?,
         omega_next: f64::INFINITY,
         fluid: fluid_forces(setup, shapes)?,
@@ -129,12 +129,12 @@ pub(super) fn kirchhoff_plate(
 /// Model C.
 pub(super) fn continuum(
     setup: &PlateImpact,
-    wanted: Wanted,
+    requested: RequestedModes,
     predictor: &Predictor,
     bodies: Continua,
-) -> Result<Joined> {
+) -> Result<Assembled> {
     let rigid = usize::from(setup.plate.edge == Edge::Free);
-    let (plate, omega_next) = continuum_plate(setup, wanted, predictor, bodies)?;
+    let (plate, omega_next) = continuum_plate(setup, requested, predictor, bodies)?;
     let elastic = plate.omega.len() - rigid;
     let inner: Vec<f64> = plate.participation.iter().map(|phi| phi[1]).collect();
     let fluid = fluid_forces(setup, |radii| continuum_shapes(setup, predictor, elastic, &inner, radii))?;
@@ -142,7 +142,7 @@ pub(super) fn continuum(
     let system = join(setup, plate, tips)?;
     let warnings = validity::warnings(setup, predictor, &system);
     let slower = setup.fluid.as_ref().map_or(1.0, |fluid| mass_factor(fluid.added_mass_frequency_ratio));
-    Ok(Joined { system, omega_next: omega_next / slower.sqrt(), fluid, warnings })
+    Ok(Assembled { system, omega_next: omega_next / slower.sqrt(), fluid, warnings })
 }
 
 /// Mass-normalised displacements of the inner face at `radii` in m (the first 0) in model C's modes, of which `elastic` are elastic,
@@ -180,7 +180,7 @@ pub(super) fn fluid_forces(
 /// Plate of model C: continuum with residual flexibility; and the frequency in rad/s of the lowest mode that is left to it.
 fn continuum_plate(
     setup: &PlateImpact,
-    wanted: Wanted,
+    requested: RequestedModes,
     predictor: &Predictor,
     bodies: Continua,
 ) -> Result<(ModalBody, f64)> {
@@ -189,14 +189,14 @@ fn continuum_plate(
     let lowest = |plate: &ContinuumPlate, modes| {
         Ok((plate.modal_body(modes, predictor.slow()), plate.omega_next(modes)))
     };
-    match wanted {
-        Wanted::Modes(modes) => lowest(&build(modes)?, modes),
-        Wanted::Below(cut) => {
+    match requested {
+        RequestedModes::Modes(modes) => lowest(&build(modes)?, modes),
+        RequestedModes::Below(cut) => {
             let plate = build(cut.modes)?;
             let below = plate.omega.iter().filter(|omega| **omega < cut.omega).count();
             lowest(&plate, below.clamp(1, cut.modes))
         }
-        Wanted::Estimate => {
+        RequestedModes::Estimate => {
             let mut most = DEFAULT_MODES;
             loop {
                 let plate = build(most)?;

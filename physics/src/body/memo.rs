@@ -8,15 +8,15 @@ const MOST: usize = 64;
 
 /// A list of values that take long to make, each made when it is first asked for.
 #[derive(Debug)]
-pub(crate) struct Kept<T>(RwLock<Vec<Arc<T>>>);
+pub(crate) struct MemoList<T>(RwLock<Vec<Arc<T>>>);
 
-impl<T> Default for Kept<T> {
+impl<T> Default for MemoList<T> {
     fn default() -> Self {
         Self(RwLock::default())
     }
 }
 
-impl<T> Kept<T> {
+impl<T> MemoList<T> {
     /// The entry that `fits`, made if there is none. Threads that want it at the same time make it each: so nobody waits for
     /// one that somebody else wants.
     pub(crate) fn find_or(
@@ -30,14 +30,14 @@ impl<T> Kept<T> {
             return Ok(known);
         }
         let made = Arc::new(make()?);
-        let mut kept = self.0.write().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = find(&kept) {
+        let mut memo = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = find(&memo) {
             return Ok(known);
         }
-        if kept.len() >= MOST {
-            kept.remove(0);
+        if memo.len() >= MOST {
+            memo.remove(0);
         }
-        kept.push(Arc::clone(&made));
+        memo.push(Arc::clone(&made));
         Ok(made)
     }
 

@@ -20,7 +20,7 @@ pub struct StepCourse<const P: usize> {
 
 /// Account of one contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct ContactLedger {
+pub struct ContactBalance {
     /// Impulse so far in N s.
     pub impulse: f64,
     /// Work of the step's force polynomials along the approach so far in J: what the bodies lost to the contact. The
@@ -41,19 +41,19 @@ pub struct ContactLedger {
     /// Impulse in N s below which a contact does not count as one.
     negligible: f64,
     /// Impulse when the present contact began, N s.
-    impulse_at_touch: f64,
+    impulse_at_contact: f64,
     /// Least distance from zero at which the local approach turned so far, over its largest value until then: a smaller error loses no
     /// contact and makes none.
     pub least_turn: f64,
     /// Largest local approach so far, m.
     approach_peak: f64,
-    /// Relative change of [`ContactLedger::end`] for a change of the local approach, over its largest value: large where bodies part slowly.
+    /// Relative change of [`ContactBalance::end`] for a change of the local approach, over its largest value: large where bodies part slowly.
     pub end_sensitivity: f64,
     /// Latest change of the local approach in m, 0 where it is not known, and how long it took in s.
     change: (f64, f64),
 }
 
-impl ContactLedger {
+impl ContactBalance {
     /// An account that does not count contacts of less than `negligible` N s: a static residual flexibility lets
     /// the far face answer before a wave can reach it, with a graze of no consequence.
     pub fn new(negligible: f64) -> Self {
@@ -62,7 +62,7 @@ impl ContactLedger {
 
     /// Books a step from `time` s of `h` s with the mean force `mean` and the force `last` at its end in N, in which the local approach in
     /// m changes evenly between its values at start and end.
-    pub fn book_even(
+    pub fn add_even(
         &mut self,
         (time, h): (f64, f64),
         [mean, last]: [f64; 2],
@@ -93,7 +93,7 @@ impl ContactLedger {
     }
 
     /// Books a flight that left the contact open by about `depth` m.
-    pub fn book_flight(&mut self, depth: f64) {
+    pub fn add_flight(&mut self, depth: f64) {
         self.least_turn = self.least_turn.min(depth / self.approach_peak);
         self.change = (0.0, 0.0);
     }
@@ -116,7 +116,7 @@ impl ContactLedger {
 
     /// Books the `defect` in N of a step's force.
     #[inline]
-    pub fn book_defect(&mut self, defect: f64) {
+    pub fn add_defect(&mut self, defect: f64) {
         self.force_defect = self.force_defect.max(defect);
         self.force_defect_sum += defect;
     }
@@ -127,9 +127,9 @@ impl ContactLedger {
     fn pass(&mut self, closed: bool, before: f64, released: impl FnOnce() -> (f64, f64)) {
         if closed && !self.closed {
             self.contacts += 1;
-            self.impulse_at_touch = before;
+            self.impulse_at_contact = before;
         } else if !closed && self.closed {
-            if self.impulse - self.impulse_at_touch <= self.negligible {
+            if self.impulse - self.impulse_at_contact <= self.negligible {
                 self.contacts -= 1;
             } else {
                 let (time, rate) = released();

@@ -4,7 +4,7 @@
 //! Lubich and Wanner, Geometric Numerical Integration, 2006, II.5). It is of second order and hardly looks at what it does: for
 //! impacts that only have to be known to a few percent. A contact much weaker than the other one, behind a thick plate, can be off by half.
 
-use super::bank::{Bank, in_blocks};
+use super::batch::{OscillatorBatch, in_blocks};
 use super::free_flight;
 use super::system::System;
 use wide::f64x4;
@@ -19,7 +19,7 @@ const MAX_STEPS: usize = 4000;
 
 /// What a contact did.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Kicked {
+pub struct SplittingPeak {
     /// Largest force, N.
     pub force_peak: f64,
     /// Impulse, N s.
@@ -30,21 +30,21 @@ pub struct Kicked {
 
 /// Both contacts of the impact of `system` until no further one is possible, without residual flexibility; `None` if that takes too long,
 /// and of a stack, which presses on when all else is over.
-pub fn run(system: &System) -> Option<[Kicked; 2]> {
+pub fn run(system: &System) -> Option<[SplittingPeak; 2]> {
     if system.stack.is_some() {
         return None;
     }
     let h = step(system);
-    let bank = Bank::new(system);
+    let batch = OscillatorBatch::new(system);
     let free: Vec<[f64; 2]> = system.oscillators.iter().map(|oscillator| oscillator.free(h)).collect();
     let [slope, impulse] = [0, 1].map(|i| in_blocks(&free.iter().map(|free| free[i]).collect::<Vec<_>>()));
     let (q, v) = system.initial_state();
     let (mut q, mut v) = (in_blocks(&q), in_blocks(&v));
-    let mut contacts = [Kicked::default(); 2];
+    let mut contacts = [SplittingPeak::default(); 2];
     let mut before = [0.0; 2];
     for n in 0..MAX_STEPS {
         let mut sums = [f64x4::ZERO; 2];
-        for (k, block) in bank.blocks.iter().enumerate() {
+        for (k, block) in batch.blocks.iter().enumerate() {
             let (start, rate) = (q[k], v[k]);
             q[k] = slope[k] * start + impulse[k] * (rate + block.damping * start);
             v[k] = slope[k] * rate - block.stiffness * impulse[k] * start;
@@ -52,7 +52,7 @@ pub fn run(system: &System) -> Option<[Kicked; 2]> {
             sums[1] += block.approach[1] * q[k];
         }
         let force = [0, 1].map(|i| system.laws[i].force(sums[i].reduce_add() - system.gap[i]));
-        for (k, block) in bank.blocks.iter().enumerate() {
+        for (k, block) in batch.blocks.iter().enumerate() {
             v[k] -= h * (block.approach[0] * force[0] + block.approach[1] * force[1]);
         }
         for ((contact, force), before) in contacts.iter_mut().zip(force).zip(before) {

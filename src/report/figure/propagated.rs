@@ -5,7 +5,7 @@ use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::chart::{CHART_WIDTH, LEFT};
 use crate::plot::polyline::path;
 use crate::plot::svg::{Svg, Theme, x2};
-use crate::uncertainty::{QuantityScatter, Scatter, Share};
+use crate::uncertainty::{PropagatedUncertainty, QuantityUncertainty, Share};
 use maud::{Markup, html};
 
 /// Most bars of a histogram.
@@ -28,11 +28,11 @@ const BLUE: &str = "#0072b2";
 const PALE: &str = "#a9cfe6";
 const ORANGE: &str = "#d55e00";
 
-/// The figure of the quantities called `wanted` as a stand-alone SVG.
-pub fn scatter_figure(scatter: &Scatter, wanted: &[String]) -> String {
-    let found = wanted.iter().filter_map(|name| Some((name, scatter.quantities.get(&**name)?)));
-    let quantities: Vec<(&String, &QuantityScatter)> = found.collect();
-    let block = HEAD + HEIGHT.max(ROW * scatter.inputs.len() as f64) + FOOT;
+/// The figure of the quantities called `quantities` as a stand-alone SVG.
+pub fn propagation_figure(propagated: &PropagatedUncertainty, quantities: &[String]) -> String {
+    let found = quantities.iter().filter_map(|name| Some((name, propagated.quantities.get(&**name)?)));
+    let quantities: Vec<(&String, &QuantityUncertainty)> = found.collect();
+    let block = HEAD + HEIGHT.max(ROW * propagated.inputs.len() as f64) + FOOT;
     let content = html! {
         @for (k, (name, of)) in quantities.iter().enumerate() {
             @let top = 8.0 + block * k as f64;
@@ -41,13 +41,13 @@ pub fn scatter_figure(scatter: &Scatter, wanted: &[String]) -> String {
             (bars(of, top + HEAD))
         }
     };
-    let title = format!("{}: propagated input uncertainty, model {}", scatter.scene, scatter.model);
+    let title = format!("{}: propagated input uncertainty, model {}", propagated.scene, propagated.model);
     let size = [CHART_WIDTH, 8.0 + block * quantities.len() as f64];
     Svg::new(&title, size, Theme::Standalone).around(&content).into_string()
 }
 
 /// How often which values occur, with 95 % of them shaded and the nominal result marked.
-fn histogram(of: &QuantityScatter, top: f64) -> Markup {
+fn histogram(of: &QuantityUncertainty, top: f64) -> Markup {
     let (Some(first), Some(last)) = (of.values.first(), of.values.last()) else { return html! {} };
     let to = prefixed(of.unit, of.mean);
     let bins = (of.values.len() / PER_BIN).clamp(1, BINS);
@@ -86,7 +86,7 @@ fn histogram(of: &QuantityScatter, top: f64) -> Markup {
 }
 
 /// Per input its share of the variance, and what it alone changes.
-fn bars(of: &QuantityScatter, top: f64) -> Markup {
+fn bars(of: &QuantityUncertainty, top: f64) -> Markup {
     let ranking = of.ranking();
     let relative = |inputs: &str| {
         let (local, nominal) = (of.local.get(inputs)?, of.nominal?);

@@ -16,7 +16,7 @@ const NOT_LINEAR: f64 = 0.1;
 
 /// The document of `uncertainty --json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Scatter {
+pub struct PropagatedUncertainty {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
     /// Name of the scene.
@@ -38,7 +38,7 @@ pub struct Scatter {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub correlations: Vec<Correlated>,
     /// The results, by name.
-    pub quantities: BTreeMap<&'static str, QuantityScatter>,
+    pub quantities: BTreeMap<&'static str, QuantityUncertainty>,
     /// What else is to be known, in sentences.
     pub notes: Vec<String>,
 }
@@ -65,7 +65,7 @@ pub struct Correlated {
 
 /// The scatter of one result. Values are in `unit`, intervals of 95 %.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct QuantityScatter {
+pub struct QuantityUncertainty {
     /// SI unit.
     pub unit: &'static str,
     /// With nominal inputs; `None` if that impact has no result.
@@ -135,7 +135,7 @@ fn share(Indices { first, total }: Indices) -> Option<Share> {
     there.then_some(Share { first, first_interval, total, total_interval })
 }
 
-impl QuantityScatter {
+impl QuantityUncertainty {
     fn of(unit: &'static str, inputs: &Inputs, impacts: &SampledImpacts) -> Self {
         let SampledImpacts { nominal, moved, rows } = impacts;
         let names = |of: &[usize]| {
@@ -150,7 +150,7 @@ impl QuantityScatter {
         let locals: Vec<Option<Local>> = moved.iter().map(local).collect();
         let values = sorted(rows);
         let factors = inputs.design.factors.iter().enumerate();
-        QuantityScatter {
+        QuantityUncertainty {
             unit,
             nominal: *nominal,
             mean: mean.value,
@@ -190,7 +190,7 @@ fn linear_deviation(inputs: &Inputs, locals: &[Option<Local>]) -> f64 {
     (own + inputs.uncertainty.correlations.iter().map(mutual).sum::<f64>()).max(0.0).sqrt()
 }
 
-impl Scatter {
+impl PropagatedUncertainty {
     /// What the impacts of each quantity (name, unit, results) show.
     pub(super) fn of(
         scene: &Scene,
@@ -200,7 +200,7 @@ impl Scatter {
     ) -> Self {
         let uncertainty = &inputs.uncertainty;
         let quantities: BTreeMap<_, _> = quantities
-            .map(|(name, unit, impacts)| (name, QuantityScatter::of(unit, inputs, &impacts)))
+            .map(|(name, unit, impacts)| (name, QuantityUncertainty::of(unit, inputs, &impacts)))
             .collect();
         let correlated = |c: &Correlation| Correlated {
             between: c.between.map(|k| uncertainty.inputs[k].field.clone()),
@@ -213,13 +213,13 @@ impl Scatter {
                     .to_owned(),
             );
         }
-        notes.extend(request.wanted.iter().filter_map(|name| curved(name, quantities.get(&**name)?)));
+        notes.extend(request.quantities.iter().filter_map(|name| curved(name, quantities.get(&**name)?)));
         let input = |of: &crate::scene::UncertainInput| Input {
             unit: of.unit,
             nominal: of.nominal,
             standard_deviation: of.standard_deviation(),
         };
-        Scatter {
+        PropagatedUncertainty {
             schema_version: SCHEMA_VERSION,
             scene: scene.name.clone(),
             model: request.model.to_string(),
@@ -236,7 +236,7 @@ impl Scatter {
 }
 
 /// That the slopes at the nominal inputs don't tell the scatter of the quantity called `name`.
-fn curved(name: &str, of: &QuantityScatter) -> Option<String> {
+fn curved(name: &str, of: &QuantityUncertainty) -> Option<String> {
     let off = of.linear_standard_deviation / of.standard_deviation - 1.0;
     (off.abs() > NOT_LINEAR).then(|| {
         format!(

@@ -6,7 +6,7 @@
 //! single steps can't know that. Two solutions with tolerances apart can: their difference is the error of the less exact of
 //! the two.
 
-use super::contact_ledger::ContactLedger;
+use super::contact_balance::ContactBalance;
 use super::integration::{Converged, Integration, Options};
 use super::step_bounds::{StepBounds, least_force, least_impulse};
 use super::system::System;
@@ -15,7 +15,7 @@ use crate::error::Result;
 /// Touches of both contacts, steps and defects of the forces, over what they may be, up to which, and share of the outer impulse from
 /// which on that the inner body takes, an impact amplifies no errors: of 3 700 random ones none was then off by more than
 /// 31 times the tolerance, one in 150 by more than ten times.
-const FEW_TOUCHES: u32 = 2;
+const FEW_CONTACTS: u32 = 2;
 const FEW_STEPS: u64 = 160;
 const SMALL_DEFECT: f64 = 1.0 / 6.0;
 /// The same for the sum of all defects where modes are damped: there the energy, which else betrays forces that are a little wrong step
@@ -36,14 +36,14 @@ const TIGHTEST: f64 = 1e-12;
 /// have converged.
 const LONG: u64 = 100_000;
 /// Tolerances above this ask for a rough answer: it is not looked whether the impact amplifies errors.
-pub const ROUGH: f64 = 1e-4;
+pub const LOW_ACCURACY: f64 = 1e-4;
 /// Difference of velocities and force peaks that is in order, in tolerances.
 pub const ENOUGH: f64 = 10.0;
 
 /// Largest relative difference of the times of release where two solutions have the same contacts. They have to have the same ones
 /// only where strong damping lets forces die away slowly, or bodies part slowly: where a graze comes and goes, no tolerance settles it.
 const RELEASED: f64 = 3e-4;
-/// Sensitivity of a time of release from which on bodies part slowly, see [`ContactLedger::end_sensitivity`]; of a half-sine it is 1/pi.
+/// Sensitivity of a time of release from which on bodies part slowly, see [`ContactBalance::end_sensitivity`]; of a half-sine it is 1/pi.
 const SLOW_SEPARATION: f64 = 5.0;
 /// The same up to which they part so quickly that a vibration on the contact decides when: steps of the first solution do not follow it.
 const QUICK_SEPARATION: f64 = 0.05;
@@ -82,7 +82,7 @@ pub fn all_within(error: f64, options: Options) -> Options {
 ///
 /// # Errors
 /// Those of `run` at the tolerance asked for.
-pub fn assured(
+pub fn controlled(
     options: &Options,
     system: &System,
     run: impl Fn(&Options) -> Result<Integration>,
@@ -114,7 +114,7 @@ fn repeated(
     let mut best = at(options.tolerance)?;
     let right = match options.results {
         Some(error) => is_clear(system, &best, error),
-        None => options.tolerance > ROUGH || is_simple(system, &best, options.tolerance),
+        None => options.tolerance > LOW_ACCURACY || is_simple(system, &best, options.tolerance),
     };
     if right {
         return Ok(best);
@@ -172,7 +172,7 @@ fn separates_slowly(result: &Integration) -> bool {
 /// Whether a vibration on the contact decides when the bodies part.
 fn separates_quickly(result: &Integration) -> bool {
     let quickly =
-        |contact: &ContactLedger| contact.contacts > 0 && contact.end_sensitivity < QUICK_SEPARATION;
+        |contact: &ContactBalance| contact.contacts > 0 && contact.end_sensitivity < QUICK_SEPARATION;
     result.contacts.iter().any(quickly)
 }
 
@@ -180,12 +180,12 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
     let [outer, inner] = &result.contacts;
     let bound = StepBounds::new(tolerance).force_defect;
     let sum = if system.is_damped() { SMALL_DEFECTS } else { SMALL_UNDAMPED_DEFECTS };
-    let small = |c: &ContactLedger| {
+    let small = |c: &ContactBalance| {
         let within = |defect: f64, share: f64| defect <= share * bound * c.force_peak;
         within(c.force_defect, SMALL_DEFECT) && within(c.force_defect_sum, sum)
     };
     !is_strongly_damped(system)
-        && outer.contacts + inner.contacts <= FEW_TOUCHES
+        && outer.contacts + inner.contacts <= FEW_CONTACTS
         && result.steps <= FEW_STEPS
         && result.contacts.iter().all(small)
         && !separates_slowly(result)

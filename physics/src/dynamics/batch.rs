@@ -66,14 +66,14 @@ impl Fed {
 
 /// All blocks of a [`System`].
 #[derive(Debug, Clone)]
-pub struct Bank {
+pub struct OscillatorBatch {
     /// In the order of the oscillators.
     pub blocks: Vec<Block>,
     /// Oscillators of a circuit, which the force of the first contact moves in one more way; none of any other body.
     pub fed: Vec<Fed>,
 }
 
-impl Bank {
+impl OscillatorBatch {
     /// The oscillators of `system`.
     pub fn new(system: &System) -> Self {
         let rest = Oscillator { omega: 0.0, alpha: 0.0 };

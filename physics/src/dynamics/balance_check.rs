@@ -13,7 +13,7 @@ const REFUSED_RANGE: (f64, f64) = (0.01, 0.1);
 ///
 /// # Errors
 /// [`Error::Solver`] if one exceeds a hundred tolerances (at least 1 %, at most 10 %) or is not a number.
-pub fn ledger_check(energy: f64, momentum: f64, tolerance: f64) -> Result<Option<String>> {
+pub fn balance_check(energy: f64, momentum: f64, tolerance: f64) -> Result<Option<String>> {
     let (least, most) = REFUSED_RANGE;
     let refused = (REFUSED * tolerance).clamp(least, most).max(tolerance);
     let (name, residual) = if momentum > energy { ("momentum", momentum) } else { ("energy", energy) };
@@ -35,24 +35,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ledger_within_the_tolerance_says_nothing() {
-        assert_eq!(ledger_check(9e-8, 2e-15, 1e-7).unwrap(), None);
-        assert_eq!(ledger_check(5e-10, 5e-10, 1e-12).unwrap(), None);
+    fn a_balance_within_the_tolerance_has_no_warning() {
+        assert_eq!(balance_check(9e-8, 2e-15, 1e-7).unwrap(), None);
+        assert_eq!(balance_check(5e-10, 5e-10, 1e-12).unwrap(), None);
     }
 
     #[test]
-    fn a_ledger_beyond_the_tolerance_is_told_and_by_whom() {
+    fn a_balance_beyond_the_tolerance_has_a_warning_with_its_name() {
         for (energy, momentum, tolerance, name) in
             [(6e-3, 1e-15, 1e-3, "energy"), (1e-8, 3e-6, 1e-7, "momentum"), (2e-9, 0.0, 1e-12, "energy")]
         {
-            let warning = ledger_check(energy, momentum, tolerance).unwrap().unwrap();
+            let warning = balance_check(energy, momentum, tolerance).unwrap().unwrap();
             let worst = format!("{:.1e}", energy.max(momentum));
             assert!(warning.contains(name) && warning.contains(&worst), "{warning}");
         }
     }
 
     #[test]
-    fn a_ledger_far_beyond_it_or_without_a_number_is_no_result() {
+    fn a_balance_far_beyond_it_or_without_a_number_is_no_result() {
         for (energy, momentum, tolerance) in [
             (0.2, 0.0, 1e-3),
             (0.011, 0.0, 1e-7),
@@ -60,10 +60,10 @@ mod tests {
             (f64::NAN, 0.0, 1e-3),
             (0.0, f64::NAN, 1e-3),
         ] {
-            let error = ledger_check(energy, momentum, tolerance).unwrap_err();
+            let error = balance_check(energy, momentum, tolerance).unwrap_err();
             assert!(matches!(error, Error::Solver(_)), "{error}");
         }
         // who asks for no more than 50 % gets it
-        assert!(ledger_check(0.4, 0.0, 0.5).unwrap().is_none());
+        assert!(balance_check(0.4, 0.0, 0.5).unwrap().is_none());
     }
 }
