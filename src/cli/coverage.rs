@@ -60,7 +60,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         validated::record(&found)?;
     }
     let found = coverage(&cases);
-    arguments.json.print(&found, table)?;
+    let named = !arguments.scenes.is_empty();
+    arguments.json.print(&found, |found| table(found, named))?;
     Ok(ExitStatus::Pass)
 }
 
@@ -111,7 +112,8 @@ fn renewed(context: &Context, recorded: &Validation, scene: &Scene, model: Model
     }
 }
 
-fn table(found: &Coverage) -> String {
+/// The coverage in lines; of `named` scenes the features that they have.
+fn table(found: &Coverage, named: bool) -> String {
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
     let mut lines = vec![format!(
         "{:<28} {:<6} {:<14} {:>6}  {}",
@@ -123,7 +125,7 @@ fn table(found: &Coverage) -> String {
     )];
     for feature in &found.features {
         let mut name = feature.feature;
-        if feature.partners.is_empty() {
+        if feature.partners.is_empty() && !named {
             lines.push(format!("{name:<28} no scene has it, or no model takes it"));
         }
         for row in &feature.partners {

@@ -21,8 +21,9 @@ pub(super) fn command() -> Command {
     let mut command = Cli::command();
     command.build();
     let groups = groups(&command);
+    let options = painted(*command.get_styles().get_header(), "Options:");
     command.mut_subcommands(without_global).help_template(format!(
-        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n{groups}\n{{all-args}}{{after-help}}"
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n{groups}\n{options}\n{{options}}{{after-help}}"
     ))
 }
 

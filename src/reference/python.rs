@@ -184,7 +184,7 @@ mod tests {
         let bare = fake(folder.path(), "bare", BARE, 0);
         let error = find(&named(bare.clone())).expect_err("incomplete");
         assert_eq!(error.exit_status(), crate::ExitStatus::Solver);
-        let said = error.to_string();
+        let said = format!("{error} {}", error.hints().join(" "));
         let bare = bare.to_string_lossy();
         for word in [&*bare, "has no dolfinx, meshio", PYTHON_VARIABLE, INSTALL] {
             assert!(said.contains(word), "`{word}` is not in: {said}");

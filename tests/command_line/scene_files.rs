@@ -71,8 +71,8 @@ fn an_endless_device_is_not_read_to_its_end() {
 fn an_unknown_name_lists_the_shipped_scenes() {
     let error = scene::resolve("scaled-plate-r1O").expect_err("no such scene");
     assert_eq!(error.exit_status(), ExitStatus::Usage);
-    assert!(flat(&error).contains("did you mean `scaled-plate-r10`?"), "{error}");
-    assert!(flat(&error).contains("scaled-plate-r6.35"), "{error}");
+    assert_eq!(error.hints()[0], "did you mean `scaled-plate-r10`?");
+    assert!(error.hints()[1].contains("scaled-plate-r6.35"), "{error:?}");
     assert!(scene::resolve("").is_err() && scene::resolve("../nothing").is_err());
 }
 

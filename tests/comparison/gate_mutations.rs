@@ -207,7 +207,7 @@ fn a_summary_that_its_own_mesh_series_contradicts_fails() {
     // what only looks it up is told as well
     let (status, said) = run(&["reference", scene], edited.path());
     assert_eq!(status, 11);
-    assert!(said.contains("contradictions_of_mesh_series"), "{said}");
+    assert!(said.contains("contradictions of mesh series"), "{said}");
     let unfounded = |summary: &mut Value| {
         summary["uncertainty"]["efficiency"] = json!(1e-9);
         summary["convergence"]["quantities"].as_object_mut().unwrap().remove("efficiency");

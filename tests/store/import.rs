@@ -68,10 +68,10 @@ fn faults_of_a_map_are_reported_and_nothing_is_stored() {
     let store = Store::open(Some(&folder.path().join("store")));
     let map = fs::read_to_string(recipe("abaqus.toml")).expect("map");
     for (from, to, part) in [
-        ("column = 2, unit = \"mm/s\", sign = -1", "column = 2, unit = \"mm/s\"", "outer_velocity_start"),
-        ("column = 2, unit = \"mm/s\"", "column = 2, unit = \"m/s\"", "outer_velocity_start"),
-        ("column = 4, unit = \"N\"", "column = 4, unit = \"kN\"", "outer_momentum_balance"),
-        ("column = 1, unit = \"s\"", "column = 1, unit = \"ms\"", "outer_momentum_balance"),
+        ("column = 2, unit = \"mm/s\", sign = -1", "column = 2, unit = \"mm/s\"", "outer velocity start"),
+        ("column = 2, unit = \"mm/s\"", "column = 2, unit = \"m/s\"", "outer velocity start"),
+        ("column = 4, unit = \"N\"", "column = 4, unit = \"kN\"", "outer momentum balance"),
+        ("column = 1, unit = \"s\"", "column = 1, unit = \"ms\"", "outer momentum balance"),
         (
             "column = 1, unit = \"s\"",
             "column = 1, unit = \"s\", offset = \"1 us\"",
@@ -132,10 +132,10 @@ fn velocities_that_mechanics_forbids_are_refused() {
         import(&scene(), &file, None, &store)
     };
     for (what, text, law) in [
-        ("a body twice as fast", velocities(|t, v, w| (t, v, 2.0 * w)), "energy_gained"),
-        ("a wrong sign", velocities(|t, v, w| (t, v, -w)), "inner_velocity_direction"),
-        ("microseconds", velocities(|t, v, w| (1e6 * t, v, w)), "outer_push_time"),
-        ("milliseconds", velocities(|t, v, w| (1e3 * t, v, w)), "outer_depth"),
+        ("a body twice as fast", velocities(|t, v, w| (t, v, 2.0 * w)), "energy gained"),
+        ("a wrong sign", velocities(|t, v, w| (t, v, -w)), "inner velocity direction"),
+        ("microseconds", velocities(|t, v, w| (1e6 * t, v, w)), "outer push time"),
+        ("milliseconds", velocities(|t, v, w| (1e3 * t, v, w)), "outer depth"),
     ] {
         let error = imported(text).expect_err(what).to_string();
         assert!(error.contains(law) && error.contains("nothing is stored"), "{what}: {error}");

@@ -222,7 +222,7 @@ fn failures(of: &str, checks: &[Check]) -> String {
     }
     let mut text = format!("\nThe result of {of} contradicts itself or its scene:\n\n");
     for check in failed {
-        text += &format!("- {}\n", check.to_string());
+        text += &format!("- {check}\n");
     }
     text
 }
