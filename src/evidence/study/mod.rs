@@ -101,7 +101,7 @@ fn of_project(name: &str) -> Result<Scene> {
 /// The study called `name`.
 ///
 /// # Errors
-/// [`Error::Usage`] if there is none; it lists those there are.
+/// [`crate::Error::Usage`] if there is none; it lists those there are.
 pub fn find(name: &str) -> Result<&'static Entry> {
     STUDIES.iter().find(|entry| entry.name == name).ok_or_else(|| {
         unknown_name(format!("there is no study `{name}`"), name, &STUDIES.map(|entry| entry.name))
