@@ -97,7 +97,7 @@ fn bars(of: &QuantityUncertainty, top: f64) -> Markup {
     let middle = TORNADO + 0.5 * COLUMN;
     let change = |value: f64| middle + 0.5 * COLUMN * value / reach;
     html! {
-        text x=(SHARES) y=(x2(top - 8.0)) font-size=(SMALL) { "share of the variance: one input; pale: with interactions" }
+        text x=(SHARES) y=(x2(top - 8.0)) font-size=(SMALL) { "share of variance; pale: with interactions" }
         text x=(x2(middle)) y=(x2(top + 4.0)) font-size=(SMALL) text-anchor="middle" { "input by one standard deviation" }
         text x=(x2(middle)) y=(x2(top + 18.0)) font-size=(SMALL) text-anchor="middle" {
             tspan fill=(ORANGE) { "lower" } ", " tspan fill=(BLUE) { "higher" }
