@@ -1,5 +1,7 @@
 //! The kinds of scene, each with its reduced models.
 
+mod body_keys;
+mod body_reading;
 mod consistency;
 pub mod flight;
 pub mod plate_impact;
