@@ -7,6 +7,7 @@ mod clearance;
 pub mod collocation;
 mod contact_forces;
 pub mod contact_ledger;
+mod direct;
 pub(crate) mod driver;
 pub mod equations;
 mod force_peak;

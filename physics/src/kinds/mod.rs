@@ -4,6 +4,8 @@ mod body_keys;
 mod body_reading;
 mod consistency;
 pub mod flight;
+pub mod general_impact;
+mod impacts;
 pub mod plate_impact;
 mod reading;
 pub mod seal_seat;
@@ -80,7 +82,7 @@ pub trait Kind: Language {
 }
 
 /// All kinds.
-pub const KINDS: &[&dyn Kind] = &[&plate_impact::Kind, &seal_seat::Kind];
+pub const KINDS: &[&dyn Kind] = &[&plate_impact::Kind, &seal_seat::Kind, &general_impact::Kind];
 
 /// The kind called `name`.
 pub fn named(name: &str) -> Option<&'static dyn Kind> {

@@ -70,6 +70,11 @@ impl Material {
         }
     }
 
+    /// What does not yield: of a rigid wall.
+    pub fn rigid() -> Self {
+        Self::elastic("rigid", f64::INFINITY, 0.0, f64::INFINITY)
+    }
+
     /// Plane-strain modulus E / (1 - nu^2) in Pa.
     pub fn plane_strain_modulus(&self) -> f64 {
         self.youngs_modulus / (1.0 - self.poisson_ratio.powi(2))

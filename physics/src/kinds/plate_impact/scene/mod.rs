@@ -1,10 +1,11 @@
 //! The scene: a body that strikes a circular plate with a second body behind it, in a fluid or dry.
 
-pub(in crate::kinds) mod plate_keys;
+mod plate_keys;
 mod plate_reading;
 mod soundness;
 
 pub use plate_keys::MAX_MODES;
+pub(in crate::kinds) use plate_keys::PLATE;
 
 use super::NAME;
 use crate::error::Result;
