@@ -70,9 +70,9 @@ impl Material {
         }
     }
 
-    /// What does not yield: of a rigid wall.
+    /// That of a rigid wall: so stiff that what it yields is lost in rounding.
     pub fn rigid() -> Self {
-        Self::elastic("rigid", f64::INFINITY, 0.0, f64::INFINITY)
+        Self::elastic("rigid", 1e30, 0.0, 1.0)
     }
 
     /// Plane-strain modulus E / (1 - nu^2) in Pa.

@@ -1,5 +1,6 @@
 //! The scene language of some kinds of scene: the keys of every scene, and those of each kind.
 
+use super::collision::Collision;
 use super::external::EXTERNAL;
 use super::flight::VIBRATION;
 use super::grammar::{Bound, Choice, Field, Kind, choice, optional, positive, pure, required};
@@ -21,6 +22,11 @@ pub(crate) trait Language: Sync {
     /// Those scenes of this kind that are another's, if there are such.
     fn alias(&self) -> Option<Alias> {
         None
+    }
+
+    /// Keys of checked values that exclude or need each other.
+    fn collisions(&self, _: &Node) -> Vec<Collision> {
+        Vec::new()
     }
 
     /// The bodies that checked values describe, and the settings of their reference.

@@ -64,6 +64,8 @@ impl Grammar {
         let uncertainty = checker.uncertainty(root, self.keys, &values);
         if checker.problems.is_empty() {
             note(material::collisions(&Node(&values))?, root, &mut checker.problems);
+            let own = kind.map_or_else(Vec::new, |kind| kind.language.collisions(&Node(&values)));
+            note(own, root, &mut checker.problems);
             if let Err(message) = with_record(&mut values, source_name) {
                 let (place, help) = (
                     span_of(root, "vibration.file"),

@@ -182,6 +182,10 @@ impl ContactModel {
         }
         warnings.extend(uncountable(result, tolerance));
         warnings.extend(ledger_check(result.energy_residual, result.momentum_residual, tolerance)?);
+        let face_yields = self.setup.face().plasticity().is_some();
+        warnings.extend((face_yields && self.setup.inner().is_some()).then(|| {
+            "the law of plastic contacts takes the inner body's tip as flat and the outer one's as more curved instead".into()
+        }));
         if self.normal_share < 1.0 {
             warnings.push("motion along the surfaces is omitted by the reduced model".into());
         }

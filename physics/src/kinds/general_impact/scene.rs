@@ -1,15 +1,16 @@
 //! The scene: a body strikes a wall, or another body.
 
 use super::NAME;
+use super::soundness::key_collisions;
 use crate::error::Result;
 use crate::kinds::body_keys::{INNER, OUTER, SERIES};
 use crate::kinds::body_reading;
 use crate::kinds::plate_impact::PLATE;
 use crate::material::Material;
+use crate::scene::collision::Collision;
 use crate::scene::grammar::{Field, Kind, choice, optional, required};
 use crate::scene::material::material;
-use crate::scene::read::refused;
-use crate::scene::values::{Checked, Node};
+use crate::scene::values::Node;
 use crate::scene::{
     Alias, Geometry, Inner, Language, Outer, ReferenceSettings, Scene, Series, Setup, Shape,
 };
@@ -146,66 +147,27 @@ impl Language for super::Kind {
         Some(Alias { with: "plate", without: "wall", kind: crate::kinds::plate_impact::NAME })
     }
 
+    fn collisions(&self, root: &Node) -> Vec<Collision> {
+        key_collisions(root)
+    }
+
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)> {
-        let setup = GeneralImpact {
-            struck: struck(root, materials)?,
-            outer: body_reading::outer(&root.table("outer")?, materials)?,
-            series: body_reading::series(root)?,
+        let of = |wall: &Node| match wall.0.contains_key("material") {
+            true => material(materials, wall.text("material")?).map(Some),
+            false => Ok(None),
         };
-        let has_end = root.optional_table("run")?.is_some_and(|run| run.0.contains_key("end_time"));
-        if setup.outer.shape.is_held() && setup.inner().is_none() && !has_end {
-            return Err(refused(
-                "`run.end_time` is missing: a bender or stack is held and strikes a wall again and again",
-                "add [run] with `end_time`, the time in which its strikes count",
-            ));
-        }
-        if root.number_or("friction", 0.0)? > 0.0 {
-            return Err(refused(
-                "`friction` has no effect: bodies that meet along their common normal do not slide",
-                "remove `friction`",
-            ));
-        }
+        let struck = match root.optional_table("wall")? {
+            Some(wall) => Struck::Wall(Wall { material: of(&wall)? }),
+            None => Struck::Inner(body_reading::inner(&root.table("inner")?, materials)?),
+        };
+        let outer = body_reading::outer(&root.table("outer")?, materials)?;
+        let series = body_reading::series(root)?;
+        let setup = GeneralImpact { outer, struck, series };
         Ok((Setup::new(setup), ReferenceSettings::of(Geometry::Axisymmetric)))
     }
 }
 
-/// A wall, or the inner body.
-fn struck(root: &Node, materials: &Node) -> Result<Struck> {
-    let (wall, inner) = (root.optional_table("wall")?, root.optional_table("inner")?);
-    match (wall, inner) {
-        _ if root.0.contains_key("plate") => Err(refused(
-            "the scene has [plate] and [wall], but the outer body strikes one of them",
-            "remove [plate] or [wall]",
-        )),
-        (Some(_), Some(_)) => {
-            Err(refused("the scene has [wall] and [inner], but nothing lies behind a wall", "remove [inner] or [wall]"))
-        }
-        (Some(wall), None) => face(&wall, materials).map(Struck::Wall),
-        (None, Some(inner)) => body_reading::inner(&inner, materials).map(Struck::Inner),
-        (None, None) => Err(refused(
-            "`inner` is missing: without [plate] and [wall] the outer body strikes the inner one",
-            "add [inner] with kind, radius and material; or [wall] or [plate]",
-        )),
-    }
-}
-
-fn face(wall: &Node, materials: &Node) -> Result<Wall> {
-    let is_rigid = matches!(wall.0.get("rigid"), Some(Checked::Flag(true)));
-    match (wall.0.contains_key("material"), is_rigid) {
-        (true, false) => Ok(Wall { material: Some(material(materials, wall.text("material")?)?) }),
-        (false, true) => Ok(Wall { material: None }),
-        (true, true) => Err(refused(
-            "`wall.material` and `wall.rigid` exclude each other: a rigid wall does not yield",
-            "remove one of them",
-        )),
-        (false, false) => Err(refused(
-            "`wall.material` is missing: the wall is of a material or rigid",
-            "add `material = \"...\"`, a name under [materials], or `rigid = true`",
-        )),
-    }
-}
-
-/// Whether the tip is that of a sphere.
+/// Radius in m of a sphere.
 pub(super) fn sphere_radius(shape: &Shape) -> Option<f64> {
     if let Shape::Sphere { radius } = shape { Some(*radius) } else { None }
 }

@@ -4,9 +4,67 @@ use super::{GeneralImpact, NAME};
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
 use crate::scene::Bodies;
+use crate::scene::values::{Checked, Node};
 
 /// Sizes of what was measured with these methods, in m.
 const LENGTH: [f64; 2] = [1e-6, 1.0];
+/// Outer bodies that are held at one end.
+const HELD: [&str; 2] = ["bender", "stack"];
+
+/// Tables and keys of a scene that exclude or need each other.
+pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
+    let has = |key: &str| root.0.contains_key(key);
+    let table = |key: &str| root.optional_table(key).ok().flatten();
+    let (wall, outer, run) = (table("wall"), table("outer"), table("run"));
+    let is_rigid = wall.as_ref().is_some_and(|wall| matches!(wall.0.get("rigid"), Some(Checked::Flag(true))));
+    let has_material = wall.as_ref().is_some_and(|wall| wall.0.contains_key("material"));
+    let is_held = outer.is_some_and(|outer| outer.text("kind").is_ok_and(|kind| HELD.contains(&kind)));
+    let ends = run.is_some_and(|run| run.0.contains_key("end_time"));
+    broken(vec![
+        Rule {
+            fields: vec!["wall"],
+            holds: !(has("plate") && has("wall")),
+            message: "the scene has [plate] and [wall], but the outer body strikes one of them".into(),
+            help: "remove [plate] or [wall]",
+        },
+        Rule {
+            fields: vec!["inner"],
+            holds: !(has("wall") && has("inner")),
+            message: "the scene has [wall] and [inner], but nothing lies behind a wall".into(),
+            help: "remove [inner] or [wall]",
+        },
+        Rule {
+            fields: vec!["kind"],
+            holds: has("wall") || has("inner"),
+            message: "`inner` is missing: without [plate] and [wall] the outer body strikes the inner one".into(),
+            help: "add [inner] with kind, radius and material; or [wall] or [plate]",
+        },
+        Rule {
+            fields: vec!["wall.rigid"],
+            holds: !(has_material && is_rigid),
+            message: "`wall.material` and `wall.rigid` exclude each other: a rigid wall does not yield".into(),
+            help: "remove one of them",
+        },
+        Rule {
+            fields: vec!["wall"],
+            holds: wall.is_none() || has_material || is_rigid,
+            message: "`wall.material` is missing: the wall is of a material or rigid".into(),
+            help: "add `material = \"...\"`, a name under [materials], or `rigid = true`",
+        },
+        Rule {
+            fields: vec!["outer.kind"],
+            holds: !is_held || wall.is_none() || ends,
+            message: "`run.end_time` is missing: a bender or stack is held and strikes a wall again and again".into(),
+            help: "add [run] with `end_time`, the time in which its strikes count",
+        },
+        Rule {
+            fields: vec!["friction"],
+            holds: root.number_or("friction", 0.0).is_ok_and(|friction| friction == 0.0),
+            message: "`friction` has no effect: bodies that meet along their common normal do not slide".into(),
+            help: "remove `friction`",
+        },
+    ])
+}
 
 impl Bodies for GeneralImpact {
     fn kind(&self) -> &'static str {
