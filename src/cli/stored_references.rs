@@ -47,7 +47,9 @@ pub(super) fn look_up(
     if problems.is_empty() {
         return Ok(found);
     }
-    hints.push("`impactcheck doctor` shows what a computation needs".into());
+    if scenes.iter().any(|(_, scene)| kinds::without_reference(scene).is_none()) {
+        hints.push("`impactcheck doctor` shows what a computation needs".into());
+    }
     Err(Error::Reference(problems.join("\n  ")).hint(hints))
 }
 

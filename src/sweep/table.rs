@@ -90,7 +90,7 @@ impl<'a> Table<'a> {
     /// The point with the highest efficiency.
     pub fn best(&self) -> Option<(&Record, f64)> {
         let rated = self.records.iter().filter_map(|r| Some((r, self.plan.value(r, "efficiency")?)));
-        rated.max_by(|a, b| a.1.total_cmp(&b.1))
+        rated.filter(|(_, efficiency)| efficiency.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Name, number and unit (none for pure numbers) of the varied fields at a point.

@@ -65,7 +65,11 @@ fn is_hertz(outcome: &Outcome, mass: f64, speed: f64, k: f64) {
     let approach = (1.25 * mass * speed * speed / k).powf(0.4);
     let summary = &outcome.summary;
     assert_relative_eq!(value(summary, "outer_force_peak"), k * approach.powf(1.5), max_relative = 1e-6);
-    assert_relative_eq!(value(summary, "outer_contact_end"), 2.943_275 * approach / speed, max_relative = 1e-6);
+    assert_relative_eq!(
+        value(summary, "outer_contact_end"),
+        2.943_275 * approach / speed,
+        max_relative = 1e-6
+    );
     assert_relative_eq!(value(summary, "outer_impulse"), 2.0 * mass * speed, max_relative = 1e-6);
     assert_relative_eq!(value(summary, "outer_restitution"), 1.0, max_relative = 1e-6);
     assert_eq!(value(summary, "outer_contacts"), 1.0);
@@ -172,7 +176,10 @@ fn a_series_of_yielding_impacts_on_a_wall_loses_less_and_less() {
         })
         .collect();
     assert_eq!(restitutions.len(), 4);
-    assert!(restitutions.windows(2).all(|pair| pair[0] < pair[1]) && restitutions[0] < 0.95, "{restitutions:?}");
+    assert!(
+        restitutions.windows(2).all(|pair| pair[0] < pair[1]) && restitutions[0] < 0.95,
+        "{restitutions:?}"
+    );
 }
 
 /// A bender on a wall bounces within its run, and its contact force is the same the heavier an inner body is that stands for the wall.
@@ -192,7 +199,8 @@ speed = "500 mm/s"
     let end = "[run]\nend_time = \"800 us\"\n";
     let wall = ran(&scene(&format!("{bender}[wall]\nmaterial = \"steel\"\n{end}"))).summary;
     // flat in comparison with the bender's tip
-    let heavy = "[inner]\nkind = \"compact\"\nmass = \"1000 kg\"\ntip_radius = \"900 m\"\nmaterial = \"steel\"\n";
+    let heavy =
+        "[inner]\nkind = \"compact\"\nmass = \"1000 kg\"\ntip_radius = \"900 m\"\nmaterial = \"steel\"\n";
     let body = ran(&scene(&format!("{bender}{heavy}{end}"))).summary;
     for name in ["outer_force_peak", "outer_contact_end", "outer_impulse", "outer_contacts"] {
         assert_relative_eq!(value(&wall, name), value(&body, name), max_relative = 1e-4);
@@ -203,10 +211,11 @@ speed = "500 mm/s"
 /// With a plate it is the plate impact: the same bodies, hash and results.
 #[test]
 fn an_impact_with_a_plate_is_a_plate_impact() {
-    let tables =
-        format!("{OUTER}{PLATE}[inner]\nkind = \"sphere\"\nradius = \"10 mm\"\nmaterial = \"steel\"\n[tolerances.B]\ninner_force_peak = 0.1\n");
-    let [general, plate] =
-        ["impact", "plate-impact"].map(|kind| Scene::parse("test.toml", &text(kind, &tables)).expect("valid"));
+    let tables = format!(
+        "{OUTER}{PLATE}[inner]\nkind = \"sphere\"\nradius = \"10 mm\"\nmaterial = \"steel\"\n[tolerances.B]\ninner_force_peak = 0.1\n"
+    );
+    let [general, plate] = ["impact", "plate-impact"]
+        .map(|kind| Scene::parse("test.toml", &text(kind, &tables)).expect("valid"));
     assert_eq!((general.hash(), &general), (plate.hash(), &plate));
     let [general, plate] = [general, plate].map(|scene| {
         let model = kinds::of(&scene).model(&scene, Model::B, None).expect("model");
@@ -228,7 +237,10 @@ fn scenes_that_contradict_themselves_are_refused_in_a_sentence() {
         (OUTER.to_owned(), "`inner` is missing: without [plate] and [wall]"),
         (format!("{OUTER}offset = \"1 mm\"\n{RIGID}"), "`outer.offset` is 0.001 m"),
         (format!("{OUTER}{inner}speed = \"-500 mm/s\"\n"), "must be greater than -0.5 m/s"),
-        (format!("{OUTER}{RIGID}[fluid]\nviscosity = 1e-3\ndensity = 1e3\nminimum_gap = 1e-6\n"), "`fluid` does not belong to kind `impact`"),
+        (
+            format!("{OUTER}{RIGID}[fluid]\nviscosity = 1e-3\ndensity = 1e3\nminimum_gap = 1e-6\n"),
+            "`fluid` does not belong to kind `impact`",
+        ),
         (format!("{OUTER}{RIGID}[reference]\n"), "`reference` does not belong to kind `impact`"),
         (format!("{OUTER}{RIGID}[reduced]\nmodel = \"A\"\n"), "`reduced.model` is \"A\""),
         (format!("{OUTER}{RIGID}[tolerances.A]\nefficiency = 0.1\n"), "`A` is not a reduced model"),
@@ -238,7 +250,8 @@ fn scenes_that_contradict_themselves_are_refused_in_a_sentence() {
     ] {
         let refused = Scene::parse("test.toml", &text("impact", &tables)).expect_err(said);
         let told = format!("{:?}", refused);
-        let flat = |text: &str| text.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        let flat =
+            |text: &str| text.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
         assert!(flat(&told).contains(said), "{said}: {told}");
         assert_eq!(refused.exit_status() as u8, 3);
     }

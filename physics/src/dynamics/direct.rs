@@ -59,8 +59,8 @@ mod tests {
     use super::*;
     use crate::analytical::hertz::HertzImpact;
     use crate::contact::Hertz;
-    use crate::dynamics::integration::Options;
     use crate::dynamics::integrate;
+    use crate::dynamics::integration::Options;
     use crate::scene::{Inner, Outer, Shape};
     use approx::assert_relative_eq;
     use std::f64::consts::PI;
@@ -112,7 +112,13 @@ mod tests {
             let compliance = (1.0 - 0.09) / 210e9 + (1.0 - 0.04) / 64e9;
             let law = Hertz { tip_radius: radius, stiffness: 4.0 / 3.0 * radius.sqrt() / compliance };
             let after = [-0.5 + 2.0 * mass * closing / masses[0], own - 2.0 * mass * closing / masses[1]];
-            is_hertz(&System::of_two_bodies(outer(0.01, 0.5), MovingBody::inner(&inner)), mass, closing, law, after);
+            is_hertz(
+                &System::of_two_bodies(outer(0.01, 0.5), MovingBody::inner(&inner)),
+                mass,
+                closing,
+                law,
+                after,
+            );
         }
     }
 }

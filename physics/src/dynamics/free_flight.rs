@@ -120,7 +120,12 @@ pub fn advance(system: &System, time: f64, q: &mut [f64], v: &mut [f64]) {
 /// is charged so slowly that its tip falls behind the inner body.
 fn inner_is_out_of_reach(system: &System, bounds: &GapBounds, q: &[f64], v: &[f64]) -> bool {
     let own = 0.5 * v[INNER].powi(2);
-    let plate = system.oscillators.iter().zip(&system.approach[bounds.contact]).enumerate().filter(|(k, _)| *k != INNER);
+    let plate = system
+        .oscillators
+        .iter()
+        .zip(&system.approach[bounds.contact])
+        .enumerate()
+        .filter(|(k, _)| *k != INNER);
     // |sum of b q|^2 <= (sum of b^2/omega^2) (sum of omega^2 q^2), infinite for a free plate
     let flexibility: f64 =
         plate.filter(|(_, (_, b))| **b != 0.0).map(|(_, (o, b))| (b / o.omega).powi(2)).sum();

@@ -40,6 +40,11 @@ pub trait Kind: Language {
     /// The curves of its histories, in order, without samples.
     fn curves(&self) -> &'static [Curve];
 
+    /// Whether results of `scene` have the quantity or curve called `name`, one of this kind.
+    fn has(&self, _: &Scene, _name: &str) -> bool {
+        true
+    }
+
     /// `model` of `scene`, ready to run, with so many `modes`, its own or the scene's number if it is `None`.
     ///
     /// # Errors

@@ -6,11 +6,10 @@ use crate::scene::{Scene, Shape};
 
 pub(super) static FEATURES: [Feature; 7] = [
     Feature::new("wall", |s| has(s, |i| wall(i).is_some_and(|wall| wall.material.is_some()))).by(Form::Hertz),
-    Feature::new("rigid wall", |s| has(s, |i| wall(i).is_some_and(|wall| wall.material.is_none()))).by(Form::Hertz),
+    Feature::new("rigid wall", |s| has(s, |i| wall(i).is_some_and(|wall| wall.material.is_none())))
+        .by(Form::Hertz),
     Feature::new("two bodies without a plate", |s| has(s, |i| i.inner().is_some())).by(Form::Hertz),
-    Feature::new("no plate, compact body", |s| {
-        has(s, |i| matches!(i.outer.shape, Shape::Compact { .. }))
-    }),
+    Feature::new("no plate, compact body", |s| has(s, |i| matches!(i.outer.shape, Shape::Compact { .. }))),
     Feature::new("no plate, bender or stack", |s| has(s, |i| i.outer.shape.is_held())),
     Feature::new("no plate, yielding material", |s| has(s, super::yields)),
     Feature::new("no plate, relaxing material", |s| {

@@ -77,7 +77,14 @@ pub(crate) fn shown_radius(shape: &Shape, largest: f64) -> f64 {
 }
 
 /// A sphere, or the tip of another body, about `centre`; `side` is 1 above what lies between and -1 below it.
-pub(crate) fn body(shape: &Shape, name: &str, radius: f64, centre: [f64; 2], side: f64, scale: &DrawingScale) -> Markup {
+pub(crate) fn body(
+    shape: &Shape,
+    name: &str,
+    radius: f64,
+    centre: [f64; 2],
+    side: f64,
+    scale: &DrawingScale,
+) -> Markup {
     let (x, y, r) = (scale.x(centre[0]), scale.z(centre[1]), radius * scale.factor);
     let sweep = if side > 0.0 { 0 } else { 1 };
     let inside = r > 24.0;

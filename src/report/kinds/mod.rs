@@ -76,7 +76,8 @@ pub(super) trait Presentation: Sync {
 }
 
 /// How results of each of [`KINDS`] are shown.
-const SHOWN: [&dyn Presentation; KINDS.len()] = [&plate_impact::Plate, &seal_seat::Seat, &general_impact::Direct];
+const SHOWN: [&dyn Presentation; KINDS.len()] =
+    [&plate_impact::Plate, &seal_seat::Seat, &general_impact::Direct];
 
 /// How results of `scene` are shown.
 pub(super) fn of(scene: &Scene) -> &'static dyn Presentation {

@@ -135,11 +135,7 @@ impl Memory {
     ///
     /// # Errors
     /// [`Error::Solver`] for a yield strength far below the contact pressure, [`Error::Internal`] for what no scene may have.
-    pub fn new(
-        materials: [&Material; 3],
-        bending: Option<Bending>,
-        system: &System,
-    ) -> Result<Option<Self>> {
+    pub fn new(materials: [&Material; 3], bending: Option<Bending>, system: &System) -> Result<Option<Self>> {
         let [outer, plate, inner] = materials;
         let bodies = [outer, inner];
         if materials.iter().all(|m| m.is_elastic()) {
@@ -209,7 +205,11 @@ impl Memory {
     /// Whether the plate's bending matters to a contact: one that can yield and has not.
     fn bends(&self) -> bool {
         self.bending.is_some()
-            && self.bodies.contacts.iter().any(|c| matches!(c, Contact::Dented(contact) if contact.is_virgin()))
+            && self
+                .bodies
+                .contacts
+                .iter()
+                .any(|c| matches!(c, Contact::Dented(contact) if contact.is_virgin()))
     }
 
     /// A sentence if a contact has yielded over a larger part of its tip than its law was found for.
@@ -243,7 +243,8 @@ impl OnsetOfYield {
         let bodies = [outer, inner];
         let contacts = [0, 1].map(|i| {
             let pair = [bodies[i], plate];
-            DentedContact::new(system.laws[i], pair, pair.map(|m| m.yield_strength)).filter(|_| system.can_close(i))
+            DentedContact::new(system.laws[i], pair, pair.map(|m| m.yield_strength))
+                .filter(|_| system.can_close(i))
         });
         contacts.iter().any(Option::is_some).then_some(Self { contacts, bending })
     }

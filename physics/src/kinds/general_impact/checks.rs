@@ -2,8 +2,8 @@
 
 use super::{GeneralImpact, ImpactQuantities};
 use crate::kinds::consistency::{
-    ENERGY_SLACK, FORCE_FLOOR, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance, momentum_balance,
-    not_negative, peak,
+    ENERGY_SLACK, FORCE_FLOOR, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance,
+    momentum_balance, not_negative, peak,
 };
 use crate::result::{History, Outcome, Statement, Summary, Table};
 
@@ -20,11 +20,16 @@ pub(super) fn checks(setup: &GeneralImpact, outcome: &Outcome) -> Vec<Statement>
     }
     let force = history.curve("outer_force");
     if let Some(force) = force {
-        found.extend(contact("outer", summary.source, (&history.time, force), Stated::of(summary, "outer"), 0.0));
+        found.extend(contact(
+            "outer",
+            summary.source,
+            (&history.time, force),
+            Stated::of(summary, "outer"),
+            0.0,
+        ));
     }
     let interval = summary.sample_interval.unwrap_or(0.0);
-    let outer_mass =
-        (!setup.outer.shape.is_held()).then(|| setup.outer.shape.mass(&setup.outer.material));
+    let outer_mass = (!setup.outer.shape.is_held()).then(|| setup.outer.shape.mass(&setup.outer.material));
     for (body, mass, sign) in [("outer", outer_mass, 1.0), ("inner", setup.inner_mass(), -1.0)] {
         let curve = |what: &str| history.curve(&format!("{body}_{what}"));
         let Some(velocity) = curve("velocity") else { continue };
@@ -84,19 +89,23 @@ pub(super) fn shown(setup: &GeneralImpact, history: &History) -> Table {
     set("outer_force_peak", Some(force.iter().copied().fold(0.0, f64::max)));
     set("outer_contact_end", is_over.then(|| last.map_or(0.0, |k| history.time[k])));
     set("outer_contacts", is_over.then_some(begins as f64));
-    let impulse = (1..force.len()).map(|k| {
-        0.5 * (history.time[k] - history.time[k - 1]) * (force[k] + force[k - 1])
-    });
+    let impulse =
+        (1..force.len()).map(|k| 0.5 * (history.time[k] - history.time[k - 1]) * (force[k] + force[k - 1]));
     set("outer_impulse", is_over.then(|| impulse.sum()));
-    let final_of = |body: &str| history.curve(&format!("{body}_velocity"))?.last().copied().filter(|_| is_over);
+    let final_of =
+        |body: &str| history.curve(&format!("{body}_velocity"))?.last().copied().filter(|_| is_over);
     let outer = final_of("outer").filter(|_| !setup.outer.shape.is_held());
     let inner = setup.inner().and_then(|_| final_of("inner"));
     set("outer_velocity_final", outer);
     set("inner_velocity_final", inner);
     let struck = if setup.inner().is_some() { inner } else { Some(0.0) };
-    set("outer_restitution", outer.zip(struck).map(|(outer, struck)| (outer - struck) / setup.closing_speed()));
+    set(
+        "outer_restitution",
+        outer.zip(struck).map(|(outer, struck)| (outer - struck) / setup.closing_speed()),
+    );
     let mass = setup.outer.shape.mass(&setup.outer.material);
-    let efficiency = |(inner, velocity): (f64, f64)| inner * velocity.powi(2) / (mass * setup.outer.speed.powi(2));
+    let efficiency =
+        |(inner, velocity): (f64, f64)| inner * velocity.powi(2) / (mass * setup.outer.speed.powi(2));
     let is_held = setup.outer.shape.is_held();
     set("efficiency", setup.inner_mass().zip(inner).filter(|_| !is_held).map(efficiency));
     table

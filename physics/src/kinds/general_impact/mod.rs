@@ -41,6 +41,10 @@ impl super::Kind for Kind {
         &CURVES
     }
 
+    fn has(&self, scene: &Scene, name: &str) -> bool {
+        scene.general_impact().is_ok_and(|setup| setup.has(name))
+    }
+
     fn model(&self, scene: &Scene, model: Model, modes: Option<usize>) -> Result<Box<dyn SeriesModel>> {
         if model != Model::C {
             return Err(Error::Usage(format!(

@@ -13,7 +13,9 @@ use crate::dynamics::{MovingBody, StopReason, assured, integrate, ledger_check};
 use crate::error::{Error, Result};
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
 use crate::kinds::{Kind as _, SeriesModel};
-use crate::result::{BenderSummary, CUT, ElasticLimit, History, Outcome, Point, StackSummary, Summary, Table};
+use crate::result::{
+    BenderSummary, CUT, ElasticLimit, History, Outcome, Point, StackSummary, Summary, Table,
+};
 use crate::scene::{self, Inner, Model, Outer, Scene};
 use std::time::Instant;
 
@@ -77,21 +79,13 @@ impl ContactModel {
             outer_impulse: contact.impulse,
         }
         .table();
-        let mut open: Vec<&str> = Vec::new();
-        if self.setup.inner().is_none() {
-            open.extend(["efficiency", "inner_velocity_final"]);
-        }
-        if outer.shape.is_held() {
-            open.push("outer_restitution");
-        }
-        if self.system.stack.is_some() {
-            // eq. (1) relates to a kinetic energy before the impact, and the tip vibrates on
-            open.extend(["efficiency", "outer_velocity_final"]);
-            if result.stop == StopReason::Pressed {
-                open.extend(["outer_contact_end", "outer_contacts", "outer_impulse"]);
-            }
-        }
-        for name in open {
+        let pressed: &[&str] = match result.stop {
+            StopReason::Pressed => &["outer_contact_end", "outer_contacts", "outer_impulse"],
+            _ => &[],
+        };
+        let absent = ImpactQuantities::ALL.iter().map(|quantity| quantity.name);
+        let absent = absent.filter(|name| !self.setup.has(name));
+        for name in absent.chain(pressed.iter().copied()) {
             table.value_mut(name).into_iter().for_each(|value| *value = None);
         }
         if result.stop == StopReason::Cut { table.cut() } else { table }
@@ -216,8 +210,7 @@ impl ContactModel {
 
     /// The curves of the scene's bodies from all those of the dynamics.
     fn history(&self, all: &History) -> History {
-        let inner = self.setup.inner().is_some();
-        let own = CURVES.iter().filter(|curve| inner || !curve.name.starts_with("inner"));
+        let own = CURVES.iter().filter(|curve| self.setup.has(curve.name));
         let curves = own.map(|curve| {
             let mut curve = curve.clone();
             curve.values.clone_from(&all[curve.name]);

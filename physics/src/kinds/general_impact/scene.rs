@@ -11,9 +11,7 @@ use crate::scene::collision::Collision;
 use crate::scene::grammar::{Field, Kind, choice, optional, required};
 use crate::scene::material::material;
 use crate::scene::values::Node;
-use crate::scene::{
-    Alias, Geometry, Inner, Language, Outer, ReferenceSettings, Scene, Series, Setup, Shape,
-};
+use crate::scene::{Alias, Geometry, Inner, Language, Outer, ReferenceSettings, Scene, Series, Setup, Shape};
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -89,6 +87,18 @@ impl GeneralImpact {
         self.inner().map(|inner| inner.shape.mass(&inner.material))
     }
 
+    /// Whether results have the quantity or curve called `name`: a wall does not move, a held body has an energy of its own, and the tip of a
+    /// stack vibrates on.
+    pub fn has(&self, name: &str) -> bool {
+        let outer = &self.outer.shape;
+        match name {
+            "efficiency" => self.inner().is_some() && !matches!(outer, Shape::Stack(_)),
+            "outer_velocity_final" => !matches!(outer, Shape::Stack(_)),
+            "outer_restitution" => !outer.is_held(),
+            _ => self.inner().is_some() || !name.starts_with("inner"),
+        }
+    }
+
     /// Velocity of what is struck at t = 0 in m/s along z.
     pub fn struck_velocity(&self) -> f64 {
         self.inner().map_or(0.0, |inner| inner.speed)
@@ -126,9 +136,17 @@ impl Language for super::Kind {
                 Kind::Table(&PLATE),
                 "Circular plate between the bodies; the scene is then one of kind `plate-impact`, with all its keys",
             ),
-            optional("wall", Kind::Table(&WALL), "Flat wall that the outer body strikes; there is no inner body"),
+            optional(
+                "wall",
+                Kind::Table(&WALL),
+                "Flat wall that the outer body strikes; there is no inner body",
+            ),
             required("outer", Kind::Table(&OUTER), "The body that strikes"),
-            optional("inner", Kind::Table(&INNER), "The body that is struck, required without plate and wall"),
+            optional(
+                "inner",
+                Kind::Table(&INNER),
+                "The body that is struck, required without plate and wall",
+            ),
             optional(
                 "series",
                 Kind::Table(&SERIES),

@@ -1,9 +1,9 @@
 //! Impacts that can't be, and numbers that are hardly meant.
 
 use super::{GeneralImpact, NAME};
+use crate::scene::Bodies;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
-use crate::scene::Bodies;
 use crate::scene::values::{Checked, Node};
 
 /// Sizes of what was measured with these methods, in m.
@@ -36,13 +36,15 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
         Rule {
             fields: vec!["kind"],
             holds: has("wall") || has("inner"),
-            message: "`inner` is missing: without [plate] and [wall] the outer body strikes the inner one".into(),
+            message: "`inner` is missing: without [plate] and [wall] the outer body strikes the inner one"
+                .into(),
             help: "add [inner] with kind, radius and material; or [wall] or [plate]",
         },
         Rule {
             fields: vec!["wall.rigid"],
             holds: !(has_material && is_rigid),
-            message: "`wall.material` and `wall.rigid` exclude each other: a rigid wall does not yield".into(),
+            message: "`wall.material` and `wall.rigid` exclude each other: a rigid wall does not yield"
+                .into(),
             help: "remove one of them",
         },
         Rule {
@@ -54,13 +56,16 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
         Rule {
             fields: vec!["outer.kind"],
             holds: !is_held || wall.is_none() || ends,
-            message: "`run.end_time` is missing: a bender or stack is held and strikes a wall again and again".into(),
+            message:
+                "`run.end_time` is missing: a bender or stack is held and strikes a wall again and again"
+                    .into(),
             help: "add [run] with `end_time`, the time in which its strikes count",
         },
         Rule {
             fields: vec!["friction"],
             holds: root.number_or("friction", 0.0).is_ok_and(|friction| friction == 0.0),
-            message: "`friction` has no effect: bodies that meet along their common normal do not slide".into(),
+            message: "`friction` has no effect: bodies that meet along their common normal do not slide"
+                .into(),
             help: "remove `friction`",
         },
     ])

@@ -91,7 +91,11 @@ pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
     let mut told = vec![
         (
             "outer".to_owned(),
-            format!("{}, {}{aside}", body_in_words(&outer.shape, &outer.material), measure(outer.speed, "m/s")),
+            format!(
+                "{}, {}{aside}",
+                body_in_words(&outer.shape, &outer.material),
+                measure(outer.speed, "m/s")
+            ),
         ),
         (
             "plate".to_owned(),

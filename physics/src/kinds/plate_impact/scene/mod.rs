@@ -85,7 +85,8 @@ impl Language for super::Kind {
 
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)> {
         let setup = plate_reading::plate_impact(root, materials)?;
-        let reference = plate_reading::reference(root.optional_table("reference")?, setup.outer.is_centred())?;
+        let reference =
+            plate_reading::reference(root.optional_table("reference")?, setup.outer.is_centred())?;
         Ok((setup.into(), reference))
     }
 }
