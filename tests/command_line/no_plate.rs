@@ -9,7 +9,8 @@ fn run(folder: &Path, arguments: &[&str], status: i32) -> String {
     let mut command = Command::cargo_bin("impactcheck").unwrap();
     command.args(arguments).current_dir(folder).env("IMPACTCHECK_STORE", folder.join("store"));
     let output = command.env("IMPACTCHECK_PYTHON", "/no/such/python3").output().unwrap();
-    let said = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned()).concat();
+    let said =
+        [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned()).concat();
     assert_eq!(output.status.code(), Some(status), "{arguments:?}: {said}");
     said
 }
@@ -39,7 +40,7 @@ fn what_needs_a_reference_says_that_there_is_none_and_what_works_instead() {
     }
 }
 
-/// Another program's curves without those that a wall has not; the gate passes and can fail.
+/// Another program's curves without those that a wall lacks; the gate passes and can fail.
 #[test]
 fn an_imported_result_is_compared_and_shown() {
     let folder = starter();
@@ -58,7 +59,8 @@ fn an_imported_result_is_compared_and_shown() {
         assert!(page.contains(shown), "{shown}");
     }
     let curves = fs::read_to_string(folder.path().join("ours.csv")).unwrap();
-    let force = curves.lines().next().unwrap().split(',').position(|name| name.starts_with("outer_force")).unwrap();
+    let force =
+        curves.lines().next().unwrap().split(',').position(|name| name.starts_with("outer_force")).unwrap();
     let weaker: Vec<String> = curves
         .lines()
         .map(|line| {
@@ -76,9 +78,10 @@ fn an_imported_result_is_compared_and_shown() {
 }
 
 #[test]
-fn sweeps_and_uncertain_inputs_take_walls_and_leave_out_what_they_have_not() {
+fn sweeps_and_uncertain_inputs_take_walls_and_leave_out_what_they_lack() {
     let folder = starter();
-    let sweep = "scene = \"wall.toml\"\n[[vary]]\nfield = \"outer.speed\"\nvalues = [\"100 mm/s\", \"1 m/s\"]\n";
+    let sweep =
+        "scene = \"wall.toml\"\n[[vary]]\nfield = \"outer.speed\"\nvalues = [\"100 mm/s\", \"1 m/s\"]\n";
     fs::write(folder.path().join("speeds.toml"), sweep).unwrap();
     let said = run(folder.path(), &["study", "sweep", "speeds.toml"], 0);
     assert!(!said.contains("NaN"), "{said}");

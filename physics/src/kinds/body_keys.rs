@@ -220,7 +220,7 @@ pub(super) static OUTER: [Field; 37] = [
             required(
                 "speed",
                 positive(Dimension::SPEED),
-                "Speed towards the plate; of a bender that of its tip",
+                "Speed towards what it strikes; of a bender that of its tip",
             ),
         ),
     ),
@@ -237,7 +237,7 @@ pub(super) static OUTER: [Field; 37] = [
         optional(
             "angle",
             Kind::Quantity(Dimension::ANGLE, TOWARDS),
-            "Angle of the velocity against the plate's normal, positive = towards +x; absent = 0",
+            "Angle of the velocity against the normal of what it strikes, positive = towards +x; absent = 0",
         ),
     ),
 ];
@@ -251,12 +251,12 @@ pub(super) static INNER: [Field; 7] = [
     optional(
         "gap",
         Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
-        "Initial distance to the plate; absent = 0",
+        "Initial distance to the plate, which changes nothing where there is none; absent = 0",
     ),
     optional(
         "speed",
         Kind::Quantity(Dimension::SPEED, Bound::ANY),
-        "Speed towards the plate at the outer body's first contact; negative = away from it, absent = 0",
+        "Speed towards the plate, or towards the outer body without one, at its first contact; negative = away from it, absent = 0",
     ),
 ];
 

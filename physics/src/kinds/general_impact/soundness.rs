@@ -142,7 +142,7 @@ impl Bodies for GeneralImpact {
         let lengths = [("outer's tip radius", self.outer.shape.tip_radius())].into_iter().chain(inner);
         found.extend(lengths.filter_map(|(name, value)| outside(name, value, LENGTH, "m")));
         if self.inner().is_some_and(|inner| inner.gap > 0.0) {
-            found.push("inner.gap changes no result: nothing lies between the bodies, and t = 0 is their first touch".into());
+            found.push("inner.gap changes no result: nothing lies between the bodies, and t = 0 is their first contact".into());
         }
         if self.series.is_some() && self.materials().iter().all(|material| material.plasticity().is_none()) {
             found.push(
