@@ -4,7 +4,7 @@ use super::Context;
 use super::schema::FILE;
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::kinds::{KINDS, Starter};
+use crate::kinds::{self, KINDS, Starter};
 use crate::scene::Scene;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -42,12 +42,13 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     }
     let text = format!("#:schema ./{FILE}\n{}", arguments.kind.text.replacen("NAME", name, 1));
     // a name that can't be one is refused as it would be in a file
-    Scene::parse(&file.display().to_string(), &text)?;
+    let scene = Scene::parse(&file.display().to_string(), &text)?;
     write_file(&file.with_file_name(FILE), crate::kinds::schema().to_string().as_bytes())?;
     write_file(&file, text.as_bytes())?;
-    context.note(format_args!(
-        "wrote {0}; edit it, then: impactcheck reduced {0}\nwith FEniCSx also: impactcheck compare {0} --compute --out my-report",
-        file.display()
-    ));
+    let file = file.display();
+    context.note(format_args!("wrote {file}; edit it, then: impactcheck reduced {file}"));
+    if kinds::of(&scene).has_reference() {
+        context.note(format_args!("with FEniCSx also: impactcheck compare {file} --compute --out my-report"));
+    }
     Ok(ExitStatus::Pass)
 }

@@ -8,7 +8,7 @@ use super::impacts;
 use super::series;
 use super::verdict::Verdict;
 use crate::format::{measure, quantity, words};
-use crate::kinds::{self, Kind};
+use crate::kinds;
 use crate::result::{Curve, History, Outcome, Source, Statement, Summary};
 use crate::scene::{Scene, Tolerances};
 use serde::Serialize;
@@ -72,7 +72,7 @@ impl Check {
 pub fn check(scene: &Scene, outcome: &Outcome) -> Vec<Check> {
     let (summary, history) = (&outcome.summary, &outcome.history);
     let kind = kinds::of(scene);
-    let mut checks = form(kind, summary, history);
+    let mut checks = form(scene, summary, history);
     checks.extend(series::contradictions(summary).map(|n| Check::count("contradictions_of_mesh_series", n)));
     if history.can_be_sampled() {
         checks.extend(sampling(summary, history));
@@ -101,8 +101,10 @@ pub(super) fn tolerances_are_used(tolerances: &Tolerances, rows: &[Discrepancy])
 
 /// Values are numbers, curves are complete, time increases. What a run has not determined is no value, nor is what another
 /// program does not state.
-fn form(kind: &dyn Kind, summary: &Summary, history: &History) -> Vec<Check> {
-    let curves = || kind.curves().iter().filter_map(stated_curve(summary.source, history));
+fn form(scene: &Scene, summary: &Summary, history: &History) -> Vec<Check> {
+    let kind = kinds::of(scene);
+    let own = || kind.curves().iter().filter(|curve| kind.has(scene, curve.name));
+    let curves = || own().filter_map(stated_curve(summary.source, history));
     // a solver of this program that states no residual has one that is no number
     let residual = |stated: Option<f64>| match summary.source {
         Source::External => stated,

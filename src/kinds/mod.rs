@@ -5,6 +5,7 @@
 
 mod approach;
 mod features;
+pub mod general_impact;
 mod place;
 pub mod plate_impact;
 pub mod seal_seat;
@@ -75,6 +76,11 @@ pub trait Kind: physics::Kind {
         true
     }
 
+    /// Whether `fem_reference` solves scenes of this kind.
+    fn has_reference(&self) -> bool {
+        true
+    }
+
     /// Whether the deck for CalculiX describes `scene`.
     fn calculix_takes(&self, _: &Scene) -> bool {
         false
@@ -137,7 +143,7 @@ pub trait Kind: physics::Kind {
 pub const INTENDED_SPEED: &str = "intended_speed";
 
 /// All kinds.
-pub const KINDS: &[&dyn Kind] = &[&plate_impact::Kind, &seal_seat::Kind];
+pub const KINDS: &[&dyn Kind] = &[&plate_impact::Kind, &seal_seat::Kind, &general_impact::Kind];
 
 /// The place of the kind of `scene` among [`KINDS`].
 pub fn index(scene: &Scene) -> usize {
@@ -167,6 +173,19 @@ pub fn models_only(scene: &Scene) -> String {
     let kind = of(scene);
     let models: Vec<String> = kind.models().iter().map(ToString::to_string).collect();
     format!("scene `{}` is of kind `{}`, which has model {} only", scene.name, kind.name(), models.join(", "))
+}
+
+/// That there is no finite-element reference of `scene`, and what to compare with instead; `None` if there is one.
+pub fn without_reference(scene: &Scene) -> Option<String> {
+    let kind = of(scene);
+    (!kind.has_reference()).then(|| {
+        format!(
+            "scene `{}`: the project has no finite-element reference for scenes of kind `{}` yet; import a result with \
+             `impactcheck reference import`, or name your own program under [[external]]",
+            scene.name,
+            kind.name()
+        )
+    })
 }
 
 fn refused(scene: &Scene, purpose: Use) -> Error {

@@ -92,7 +92,7 @@ impl<'a> Table<'a> {
     pub fn best(&self, model: Model) -> Option<(&Record, f64)> {
         let own = self.records.iter().filter(|record| self.plan.model(record.index) == model);
         let rated = own.filter_map(|r| Some((r, self.plan.value(r, "efficiency")?)));
-        rated.max_by(|a, b| a.1.total_cmp(&b.1))
+        rated.filter(|(_, efficiency)| efficiency.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Name, number and unit (none for pure numbers) of the varied fields at a point.

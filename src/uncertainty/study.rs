@@ -162,7 +162,9 @@ pub fn study(
             .collect(),
         rows: growing.rows(rows, quantity),
     };
-    let quantities = kinds::of(scene).quantities().iter().filter(|quantity| !quantity.is_count);
+    let kind = kinds::of(scene);
+    let has = |name: &str| kind.has(scene, name);
+    let quantities = kind.quantities().iter().filter(|quantity| !quantity.is_count && has(quantity.name));
     let mut propagated =
         PropagatedUncertainty::of(scene, request, inputs, quantities.map(|q| (q.name, q.unit, of(q.name))));
     (propagated.samples, propagated.impacts, propagated.failures, propagated.accurate) =

@@ -143,7 +143,7 @@ fn a_new_scene_may_be_named_by_its_file() {
 #[test]
 fn a_new_scene_names_the_schema_in_its_folder() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, kind) in [("sub/plate", "plate-impact"), ("sub/seat", "seal-seat")] {
+    for (name, kind) in [("sub/plate", "plate-impact"), ("sub/seat", "seal-seat"), ("sub/wall", "impact")] {
         run(folder.path(), &["new", name, "--kind", kind], 0);
         let text = fs::read_to_string(folder.path().join(format!("{name}.toml"))).unwrap();
         let schema = text.lines().next().unwrap().strip_prefix("#:schema ").expect("at the head");

@@ -14,6 +14,7 @@ mod guide;
 #[cfg(target_os = "linux")]
 mod interruption;
 mod measured;
+mod no_plate;
 mod optimise;
 mod program;
 mod scene_files;

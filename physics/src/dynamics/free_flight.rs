@@ -30,7 +30,7 @@ const RENEWAL: usize = 500;
 pub fn next_contact(system: &System, q: &[f64], v: &[f64], limit: f64) -> Result<Flight> {
     // a run whose end is given is about the bender's later strikes too
     let endless = limit.is_infinite() && system.outer_returns();
-    if endless && inner_is_out_of_reach(system, &GapBounds::new(system, 1, q, v), q, v) {
+    if endless && inner_is_out_of_reach(system, &GapBounds::new(system, system.inner_contact(), q, v), q, v) {
         return Ok(Flight::Over);
     }
     let (mut q, mut v, mut start) = (q.to_vec(), v.to_vec(), 0.0);
@@ -86,16 +86,15 @@ fn search(system: &System, q: &[f64], v: &[f64], limit: f64) -> ContactSearch {
 
 /// Whether no contact can touch any more in free flight from the state (`q`, `v`), both contacts open.
 pub fn is_over(system: &System, q: &[f64], v: &[f64]) -> bool {
-    let inner = GapBounds::new(system, 1, q, v);
     if system.outer_returns() {
-        return inner_is_out_of_reach(system, &inner, q, v);
+        return inner_is_gone(system, q, v);
     }
-    inner.horizon(0.0).is_none() && GapBounds::new(system, 0, q, v).horizon(0.0).is_none()
+    [1, 0].into_iter().all(|contact| GapBounds::new(system, contact, q, v).horizon(0.0).is_none())
 }
 
 /// Whether the inner body, which is free, recedes and is out of reach in the state (`q`, `v`), whatever the outer one does to the plate.
 pub fn inner_is_gone(system: &System, q: &[f64], v: &[f64]) -> bool {
-    inner_is_out_of_reach(system, &GapBounds::new(system, 1, q, v), q, v)
+    inner_is_out_of_reach(system, &GapBounds::new(system, system.inner_contact(), q, v), q, v)
 }
 
 /// A time in s within which no contact can touch in free flight from the state (`q`, `v`).
@@ -121,7 +120,12 @@ pub fn advance(system: &System, time: f64, q: &mut [f64], v: &mut [f64]) {
 /// is charged so slowly that its tip falls behind the inner body.
 fn inner_is_out_of_reach(system: &System, bounds: &GapBounds, q: &[f64], v: &[f64]) -> bool {
     let own = 0.5 * v[INNER].powi(2);
-    let plate = system.oscillators.iter().zip(&system.approach[1]).enumerate().filter(|(k, _)| *k != INNER);
+    let plate = system
+        .oscillators
+        .iter()
+        .zip(&system.approach[bounds.contact])
+        .enumerate()
+        .filter(|(k, _)| *k != INNER);
     // |sum of b q|^2 <= (sum of b^2/omega^2) (sum of omega^2 q^2), infinite for a free plate
     let flexibility: f64 =
         plate.filter(|(_, (_, b))| **b != 0.0).map(|(_, (o, b))| (b / o.omega).powi(2)).sum();

@@ -227,7 +227,8 @@ pub(super) fn unexplained_momentum(
     let velocity = system.of_bodies(v);
     let fluid_impulse = fluid.film_impulse + fluid.drag_impulse;
     let gained = system.masses[1] * (velocity[1] - system.inner_velocity());
-    let mut largest = (gained + inner.impulse - fluid_impulse).abs();
+    let received = [outer, inner][system.inner_contact()].impulse;
+    let mut largest = (gained + received - fluid_impulse).abs();
     if !system.outer_returns() {
         let momentum = system.masses[0] * (velocity[0] + system.speed);
         largest = largest.max((momentum - outer.impulse).abs());

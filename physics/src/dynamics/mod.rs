@@ -7,6 +7,7 @@ mod clearance;
 pub mod collocation;
 pub mod contact_balance;
 mod contact_forces;
+mod direct;
 pub(crate) mod driver;
 pub mod equations;
 pub mod error_control;

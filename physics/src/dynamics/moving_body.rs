@@ -196,7 +196,8 @@ impl MovingBody {
         Self { stack, ..Self::rigid(&outer.shape, &outer.material, [outer.speed, -outer.speed], 0.0) }
     }
 
-    fn inner(inner: &Inner) -> Self {
+    /// The inner body, which is rigid.
+    pub fn inner(inner: &Inner) -> Self {
         Self::rigid(&inner.shape, &inner.material, [inner.speed; 2], inner.gap)
     }
 

@@ -272,9 +272,26 @@ impl System {
         dot(&self.bodies[1], &self.start[1])
     }
 
-    /// The outer body's impact if the plate were a half-space at rest: the measure of duration and force.
+    /// The outer body's impact if the plate were a half-space at rest, or without a plate the impact itself: the measure of duration and
+    /// force.
     pub fn hertz_impact(&self) -> HertzImpact {
-        HertzImpact { mass: self.masses[0], speed: self.speed, stiffness: self.laws[0].stiffness }
+        // zero but where the outer body strikes the inner one
+        let struck = self.approach[0][INNER];
+        HertzImpact {
+            mass: self.masses[0] / (1.0 + self.masses[0] * struck * struck),
+            speed: self.speed + struck * self.start[1][INNER],
+            stiffness: self.laws[0].stiffness,
+        }
+    }
+
+    /// Whether contact `i` moves with any coordinate; without a plate the second does not.
+    pub fn can_close(&self, i: usize) -> bool {
+        self.approach[i].iter().any(|b| *b != 0.0)
+    }
+
+    /// The contact that the inner body has: that with the plate, or without one that with the outer body.
+    pub fn inner_contact(&self) -> usize {
+        usize::from(self.approach[0][INNER] == 0.0)
     }
 
     /// Whether the outer body is held by a spring of its own (a bender, a stack) and comes back whatever happens.

@@ -1,7 +1,11 @@
 //! The kinds of scene, each with its reduced models.
 
+mod body_keys;
+mod body_reading;
 mod consistency;
 pub mod flight;
+pub mod general_impact;
+mod impacts;
 pub mod plate_impact;
 mod reading;
 pub mod seal_seat;
@@ -35,6 +39,11 @@ pub trait Kind: Language {
 
     /// The curves of its histories, in order, without samples.
     fn curves(&self) -> &'static [Curve];
+
+    /// Whether results of `scene` have the quantity or curve called `name`, one of this kind.
+    fn has(&self, _: &Scene, _name: &str) -> bool {
+        true
+    }
 
     /// `model` of `scene`, ready to run, with so many `modes`, its own or the scene's number if it is `None`.
     ///
@@ -78,7 +87,7 @@ pub trait Kind: Language {
 }
 
 /// All kinds.
-pub const KINDS: &[&dyn Kind] = &[&plate_impact::Kind, &seal_seat::Kind];
+pub const KINDS: &[&dyn Kind] = &[&plate_impact::Kind, &seal_seat::Kind, &general_impact::Kind];
 
 /// The kind called `name`.
 pub fn named(name: &str) -> Option<&'static dyn Kind> {

@@ -70,6 +70,11 @@ impl Material {
         }
     }
 
+    /// That of a rigid wall: so stiff that what it yields is lost in rounding.
+    pub fn rigid() -> Self {
+        Self::elastic("rigid", 1e30, 0.0, 1.0)
+    }
+
     /// Plane-strain modulus E / (1 - nu^2) in Pa.
     pub fn plane_strain_modulus(&self) -> f64 {
         self.youngs_modulus / (1.0 - self.poisson_ratio.powi(2))

@@ -1,5 +1,6 @@
 //! The scene language of some kinds of scene: the keys of every scene, and those of each kind.
 
+use super::collision::Collision;
 use super::external::EXTERNAL;
 use super::flight::VIBRATION;
 use super::grammar::{Bound, Choice, Field, Kind, choice, optional, positive, pure, required};
@@ -9,17 +10,45 @@ use super::tolerances::Gated;
 use super::values::Node;
 use super::{Model, ReferenceSettings, Setup};
 use crate::error::Result;
+use std::borrow::Cow;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 /// What a kind of scene adds to the language.
 pub(crate) trait Language: Sync {
     /// The keys that only scenes of this kind have, also those that others have in another form.
     fn keys(&self) -> Vec<Field>;
 
+    /// Those scenes of this kind that are another's, if there are such.
+    fn alias(&self) -> Option<Alias> {
+        None
+    }
+
+    /// Keys of checked values that exclude or need each other.
+    fn collisions(&self, _: &Node) -> Vec<Collision> {
+        Vec::new()
+    }
+
     /// The bodies that checked values describe, and the settings of their reference.
     ///
     /// # Errors
     /// [`crate::Error::Scene`] for values that do not go together.
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)>;
+}
+
+/// Scenes that are read as those of another kind: those with one key and without another.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Alias {
+    pub(crate) with: &'static str,
+    pub(crate) without: &'static str,
+    /// Name of the kind that they are read as.
+    pub(crate) kind: &'static str,
+}
+
+impl Alias {
+    fn is_meant(&self, root: &DeTable) -> bool {
+        root.contains_key(self.with) && !root.contains_key(self.without)
+    }
 }
 
 /// A kind of scene as the language knows it.
@@ -79,6 +108,18 @@ impl Grammar {
     /// The kind called `name`.
     pub(crate) fn dialect(&self, name: &str) -> Option<&Dialect> {
         self.dialects.iter().find(|dialect| dialect.name == name)
+    }
+
+    /// `root` with the name of the kind that it is read as, see [`Language::alias`].
+    pub(crate) fn resolved<'a, 'r>(&self, root: &'r DeTable<'a>) -> Cow<'r, DeTable<'a>> {
+        let Some((key, value)) = root.get_key_value("kind") else { return Cow::Borrowed(root) };
+        let dialect = value.get_ref().as_str().and_then(|name| self.dialect(name));
+        let alias = dialect.and_then(|dialect| dialect.language.alias());
+        let Some(alias) = alias.filter(|alias| alias.is_meant(root)) else { return Cow::Borrowed(root) };
+        let mut resolved = root.clone();
+        let kind = DeValue::String(alias.kind.into());
+        resolved.insert(key.clone(), Spanned::new(value.span(), kind));
+        Cow::Owned(resolved)
     }
 
     /// The SI unit of the quantity at `path` in a scene's JSON form, such as `plate.material.density`.

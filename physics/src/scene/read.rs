@@ -31,10 +31,11 @@ impl Grammar {
     /// As [`Self::parse`].
     pub(super) fn parse_values(&self, source_name: &str, text: &str) -> Result<(Scene, Values)> {
         let tree = DeTable::parse(text).map_err(|e| syntax(source_name, text, &e))?;
-        let (values, settings) = self.checked(source_name, text, tree.get_ref())?;
+        let root = &*self.resolved(tree.get_ref());
+        let (values, settings) = self.checked(source_name, text, root)?;
         let scene = self.assemble(&values, settings)?;
         let mut problems = Collector::new(source_name, text);
-        note(collisions(&scene), tree.get_ref(), &mut problems);
+        note(collisions(&scene), root, &mut problems);
         match problems.is_empty() {
             true => Ok((scene, values)),
             false => Err(Error::Scene(problems.into_report())),
@@ -63,6 +64,8 @@ impl Grammar {
         let uncertainty = checker.uncertainty(root, self.keys, &values);
         if checker.problems.is_empty() {
             note(material::collisions(&Node(&values))?, root, &mut checker.problems);
+            let own = kind.map_or_else(Vec::new, |kind| kind.language.collisions(&Node(&values)));
+            note(own, root, &mut checker.problems);
             if let Err(message) = with_record(&mut values, source_name) {
                 let (place, help) = (
                     span_of(root, "vibration.file"),

@@ -36,7 +36,30 @@ impl Grammar {
                 }));
             }
         }
+        if let Some(rules) = schema["allOf"].as_array_mut() {
+            rules.iter_mut().for_each(|rule| self.resolve(rule));
+        }
         schema
+    }
+
+    /// Lets a rule for scenes of one kind hold for those, too, that are read as such, and no more for those that are read as another.
+    fn resolve(&self, rule: &mut Value) {
+        let Some(name) = rule["if"]["properties"]["kind"]["const"].as_str().map(str::to_owned) else {
+            return;
+        };
+        for dialect in &self.dialects {
+            let Some(alias) = dialect.language.alias() else { continue };
+            let named =
+                |kind: &str| json!({ "properties": { "kind": { "const": kind } }, "required": ["kind"] });
+            let meant = json!({
+                "allOf": [named(dialect.name), { "required": [alias.with], "not": { "required": [alias.without] } }],
+            });
+            if name == alias.kind {
+                rule["if"] = json!({ "anyOf": [named(&name), meant] });
+            } else if name == dialect.name {
+                rule["if"] = json!({ "allOf": [named(&name), { "not": meant }] });
+            }
+        }
     }
 }
 
@@ -66,7 +89,7 @@ fn table(fields: &[Field]) -> Value {
             .map(|f| (f.key.to_owned(), json!(false)))
             .collect();
         let own = fields.iter().filter(|f| several(f) && f.belongs_to(Some(kind)));
-        particular.extend(own.map(|f| (f.key.to_owned(), value(&f.kind))));
+        particular.extend(own.map(|f| (f.key.to_owned(), described(value(&f.kind), f.doc))));
         let mut then = json!({ "required": needed, "properties": particular });
         let ways = alternatives(fields, Some(kind));
         if !ways.is_empty() {

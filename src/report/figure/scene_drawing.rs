@@ -1,9 +1,9 @@
-//! What drawings of scenes to scale share: places, the bar that gives the scale, materials in numbers.
+//! What drawings of scenes to scale share: places, the bar that gives the scale, bodies, materials in numbers.
 
 use crate::format::{measure, short};
 use crate::plot::svg::x2;
 use crate::plot::ticks::round_below;
-use crate::scene::Material;
+use crate::scene::{Material, Shape};
 use maud::{Markup, html};
 
 /// From places (x, z) in m to the drawing.
@@ -66,4 +66,67 @@ pub(crate) fn materials<'a>(of: impl IntoIterator<Item = &'a Material>) -> Vec<(
         }
     }
     facts
+}
+
+/// Of a body of which the tip alone is known that of the tip, as far as it can be drawn: at most `largest`.
+pub(crate) fn shown_radius(shape: &Shape, largest: f64) -> f64 {
+    match shape {
+        Shape::Sphere { radius } => *radius,
+        Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => shape.tip_radius().min(largest),
+    }
+}
+
+/// A sphere, or the tip of another body, about `centre`; `side` is 1 above what lies between and -1 below it.
+pub(crate) fn body(
+    shape: &Shape,
+    name: &str,
+    radius: f64,
+    centre: [f64; 2],
+    side: f64,
+    scale: &DrawingScale,
+) -> Markup {
+    let (x, y, r) = (scale.x(centre[0]), scale.z(centre[1]), radius * scale.factor);
+    let sweep = if side > 0.0 { 0 } else { 1 };
+    let inside = r > 24.0;
+    let label = if inside {
+        (x, y + if matches!(shape, Shape::Sphere { .. }) { 4.5 } else { side * 14.0 + 4.5 })
+    } else {
+        (x + r + 26.0, y - side * 4.0 + 4.5)
+    };
+    html! {
+        @match shape {
+            Shape::Sphere { .. } => circle class=(format!("fig-body {name}")) cx=(x2(x)) cy=(x2(y)) r=(x2(r)) {},
+            Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => {
+                path class=(format!("fig-body {name}")) d=(format!("M{} {}A{r:.2} {r:.2} 0 0 {sweep} {} {}", x2(x - r), x2(y), x2(x + r), x2(y))) {}
+                path.fig-frame stroke-dasharray="3 3" d=(format!("M{} {}V{}H{}V{}", x2(x - r), x2(y), x2(y - side * r), x2(x + r), x2(y))) {}
+            },
+        }
+        text x=(x2(label.0)) y=(x2(label.1)) text-anchor="middle" { (name) }
+    }
+}
+
+/// A body in words and numbers.
+pub(crate) fn body_in_words(shape: &Shape, material: &Material) -> String {
+    let grams = |mass: f64| format!("{} g", short(1e3 * mass));
+    let tip = measure(shape.tip_radius(), "m");
+    match shape {
+        Shape::Sphere { radius } => format!("sphere, radius {}, {}", measure(*radius, "m"), material.name),
+        Shape::Compact { mass, .. } => {
+            format!("compact body, {}, tip radius {tip}, {}", grams(*mass), material.name)
+        }
+        Shape::Bender(bender) => format!(
+            "bender, length {}, tip mass {}, tip radius {tip}, {}",
+            measure(bender.length, "m"),
+            grams(bender.tip_mass),
+            material.name
+        ),
+        Shape::Stack(stack) => format!(
+            "stack, length {}, stroke {}, blocked force {}, {}, tip radius {tip}, {}",
+            measure(stack.length, "m"),
+            measure(stack.stroke, "m"),
+            measure(stack.blocked_force, "N"),
+            measure(stack.voltage, "V"),
+            material.name
+        ),
+    }
 }

@@ -1,5 +1,6 @@
 //! How the results of a kind of scene are shown, where that differs from kind to kind.
 
+mod general_impact;
 mod plate_impact;
 mod seal_seat;
 
@@ -75,7 +76,8 @@ pub(super) trait Presentation: Sync {
 }
 
 /// How results of each of [`KINDS`] are shown.
-const SHOWN: [&dyn Presentation; KINDS.len()] = [&plate_impact::Plate, &seal_seat::Seat];
+const SHOWN: [&dyn Presentation; KINDS.len()] =
+    [&plate_impact::Plate, &seal_seat::Seat, &general_impact::Direct];
 
 /// How results of `scene` are shown.
 pub(super) fn of(scene: &Scene) -> &'static dyn Presentation {

@@ -65,7 +65,8 @@ pub struct Memory {
     pub warnings: Vec<String>,
     /// Relaxation of the plate's material.
     plate: Vec<Relaxation>,
-    bending: Bending,
+    /// How the plate bends, if there is one.
+    bending: Option<Bending>,
 }
 
 /// Contacts and what lies beneath them.
@@ -129,19 +130,22 @@ impl CreepingContacts {
 }
 
 impl Memory {
-    /// What the `materials` of outer body, plate and inner body remember in a model that is `system` of a plate with this `bending`,
+    /// What the `materials` of outer body, plate and inner body remember in a model that is `system` of a plate with this `bending`, or of none,
     /// virgin; `None` if all of them are elastic.
     ///
     /// # Errors
     /// [`Error::Solver`] for a yield strength far below the contact pressure, [`Error::Internal`] for what no scene may have.
-    pub fn new(materials: [&Material; 3], bending: Bending, system: &System) -> Result<Option<Self>> {
+    pub fn new(materials: [&Material; 3], bending: Option<Bending>, system: &System) -> Result<Option<Self>> {
         let [outer, plate, inner] = materials;
         let bodies = [outer, inner];
         if materials.iter().all(|m| m.is_elastic()) {
             return Ok(None);
         }
         let hits = [0, 1].map(|i| hit(system, i));
-        let contact = |i: usize| contact([bodies[i], plate], system.laws[i], &hits[i]);
+        let contact = |i: usize| match system.can_close(i) {
+            true => contact([bodies[i], plate], system.laws[i], &hits[i]),
+            false => Ok(Contact::Elastic(system.laws[i])),
+        };
         let contacts = [contact(0)?, contact(1)?];
         let mut warnings: Vec<String> =
             materials.into_iter().filter_map(|material| hardening_omitted(material, system, &hits)).collect();
@@ -168,7 +172,7 @@ impl Memory {
 
     /// Whether they stay so under `loads` with the largest forces `peaks` in N, in a model that is `system`.
     pub fn is_elastic_under(&self, system: &System, loads: &ForceHistory, peaks: [f64; 2]) -> bool {
-        let critical = self.critical_forces(self.bending.at_peaks(&system.laws, loads));
+        let critical = self.critical_forces(stress_at_peaks(self.bending, system, loads));
         self.plate.is_empty() && critical.into_iter().zip(peaks).all(|(critical, peak)| peak <= critical)
     }
 
@@ -198,7 +202,12 @@ impl Memory {
 
     /// Whether the plate's bending matters to a contact: one that can yield and has not.
     fn bends(&self) -> bool {
-        self.bodies.contacts.iter().any(|c| matches!(c, Contact::Dented(contact) if contact.is_virgin()))
+        self.bending.is_some()
+            && self
+                .bodies
+                .contacts
+                .iter()
+                .any(|c| matches!(c, Contact::Dented(contact) if contact.is_virgin()))
     }
 
     /// A sentence if a contact has yielded over a larger part of its tip than its law was found for.
@@ -222,30 +231,39 @@ impl Memory {
 pub struct OnsetOfYield {
     /// `None` where no yield strength is known.
     contacts: [Option<DentedContact>; 2],
-    bending: Bending,
+    bending: Option<Bending>,
 }
 
 impl OnsetOfYield {
     /// Of the `materials` of outer body, plate and inner body, as [`Memory::new`]; `None` if no yield strength is known.
-    pub fn new(materials: [&Material; 3], bending: Bending, system: &System) -> Option<Self> {
+    pub fn new(materials: [&Material; 3], bending: Option<Bending>, system: &System) -> Option<Self> {
         let [outer, plate, inner] = materials;
         let bodies = [outer, inner];
         let contacts = [0, 1].map(|i| {
             let pair = [bodies[i], plate];
             DentedContact::new(system.laws[i], pair, pair.map(|m| m.yield_strength))
+                .filter(|_| system.can_close(i))
         });
         contacts.iter().any(Option::is_some).then_some(Self { contacts, bending })
     }
 
     /// Force in N at which contact `i` of `system` begins to yield in an impact with the course of `loads`; `None` if nothing there can.
     pub fn force(&self, i: usize, system: &System, loads: &ForceHistory) -> Option<f64> {
-        let stress = self.bending.at_peaks(&system.laws, loads)[i];
+        let stress = stress_at_peaks(self.bending, system, loads)[i];
         Some(self.contacts[i]?.on_a_pulled_plate(stress).critical_force())
     }
 }
 
-/// Contact `i` as an impact on a rigid plate, both bodies closing: the scale of its load.
+/// Stress in Pa along the faces of a plate with this `bending` where the forces `loads` are largest; none without a plate.
+fn stress_at_peaks(bending: Option<Bending>, system: &System, loads: &ForceHistory) -> [f64; 2] {
+    bending.map_or([0.0; 2], |bending| bending.at_peaks(&system.laws, loads))
+}
+
+/// Contact `i` as an impact on a rigid plate, both bodies closing: the scale of its load. Without a plate there is one impact.
 fn hit(system: &System, i: usize) -> HertzImpact {
+    if !system.can_close(1) {
+        return system.hertz_impact();
+    }
     let speed = system.speed + system.inner_speed.max(0.0);
     HertzImpact { mass: system.masses[i], speed, stiffness: system.laws[i].stiffness }
 }
@@ -356,7 +374,7 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
     // the plate bends under the forces that the contacts answer with, which its bending changes a little
     let mut unsettled = 0.0;
     for round in 0..if memory.bends() { MOST_ROUNDS } else { 0 } {
-        let found = memory.bending.at_peaks(&system.laws, &before.loads);
+        let found = stress_at_peaks(memory.bending, system, &before.loads);
         // where it changes them by more than a little, half of the way
         let share = if round < STRAIGHT { 1.0 } else { 0.5 };
         stress = [0, 1].map(|i| stress[i] + share * (found[i] - stress[i]));

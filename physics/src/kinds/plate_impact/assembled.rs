@@ -80,7 +80,7 @@ impl PlateImpact {
     /// # Errors
     /// As [`Memory::new`].
     pub fn memory(&self, system: &System) -> Result<Option<Memory>> {
-        Memory::new(self.materials(), Bending::new(&self.plate), system)
+        Memory::new(self.materials(), Some(Bending::new(&self.plate)), system)
     }
 }
 

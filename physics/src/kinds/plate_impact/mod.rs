@@ -13,7 +13,6 @@ mod predictor;
 pub mod reduced;
 mod results;
 mod scene;
-mod series;
 pub mod shared;
 mod shown;
 mod trials;
@@ -29,10 +28,11 @@ use crate::scene::{Model, Scene};
 use std::f64::consts::FRAC_PI_2;
 
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
+pub(super) use scene::PLATE;
 pub use scene::{MAX_MODES, PlateImpact};
 
 /// Its name in scene files.
-const NAME: &str = "plate-impact";
+pub(super) const NAME: &str = "plate-impact";
 
 /// The registry's entry.
 pub struct Kind;

@@ -3,8 +3,8 @@
 use crate::format::{measure, short};
 use crate::kinds::plate_impact::PlateImpact;
 use crate::plot::svg::{Svg, Theme, x2};
-use crate::report::figure::scene_drawing::{DrawingScale, materials};
-use crate::scene::{Edge, Material, Shape};
+use crate::report::figure::scene_drawing::{DrawingScale, body, body_in_words, materials, shown_radius};
+use crate::scene::Edge;
 use maud::{Markup, html};
 
 const WIDTH: f64 = 340.0;
@@ -51,36 +51,6 @@ pub(super) fn plate_picture(scene: &PlateImpact) -> Markup {
     Svg::new("The scene in section, to scale", [WIDTH, height], Theme::Inline).around(&drawing)
 }
 
-/// Of a body of which the tip alone is known that of the tip, as far as it can be drawn.
-fn shown_radius(shape: &Shape, plate: f64) -> f64 {
-    match shape {
-        Shape::Sphere { radius } => *radius,
-        Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => shape.tip_radius().min(plate),
-    }
-}
-
-/// A sphere, or the tip of another body, about `centre`; `side` is 1 above the plate and -1 below it.
-fn body(shape: &Shape, name: &str, radius: f64, centre: [f64; 2], side: f64, scale: &DrawingScale) -> Markup {
-    let (x, y, r) = (scale.x(centre[0]), scale.z(centre[1]), radius * scale.factor);
-    let sweep = if side > 0.0 { 0 } else { 1 };
-    let inside = r > 24.0;
-    let label = if inside {
-        (x, y + if matches!(shape, Shape::Sphere { .. }) { 4.5 } else { side * 14.0 + 4.5 })
-    } else {
-        (x + r + 26.0, y - side * 4.0 + 4.5)
-    };
-    html! {
-        @match shape {
-            Shape::Sphere { .. } => circle class=(format!("fig-body {name}")) cx=(x2(x)) cy=(x2(y)) r=(x2(r)) {},
-            Shape::Compact { .. } | Shape::Bender(_) | Shape::Stack(_) => {
-                path class=(format!("fig-body {name}")) d=(format!("M{} {}A{r:.2} {r:.2} 0 0 {sweep} {} {}", x2(x - r), x2(y), x2(x + r), x2(y))) {}
-                path.fig-frame stroke-dasharray="3 3" d=(format!("M{} {}V{}H{}V{}", x2(x - r), x2(y), x2(y - side * r), x2(x + r), x2(y))) {}
-            },
-        }
-        text x=(x2(label.0)) y=(x2(label.1)) text-anchor="middle" { (name) }
-    }
-}
-
 /// What holds the rim.
 fn edge(edge: Edge, radius: f64, thickness: f64, scale: &DrawingScale) -> Markup {
     let (middle, half) = (scale.z(0.0), 0.5 * thickness);
@@ -121,7 +91,11 @@ pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
     let mut facts = vec![
         (
             "outer".to_owned(),
-            format!("{}, {}{aside}", of_body(&outer.shape, &outer.material), measure(outer.speed, "m/s")),
+            format!(
+                "{}, {}{aside}",
+                body_in_words(&outer.shape, &outer.material),
+                measure(outer.speed, "m/s")
+            ),
         ),
         (
             "plate".to_owned(),
@@ -132,7 +106,7 @@ pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
                 plate.material.name
             ),
         ),
-        ("inner".to_owned(), of_body(&inner.shape, &inner.material) + &gap + &own),
+        ("inner".to_owned(), body_in_words(&inner.shape, &inner.material) + &gap + &own),
     ];
     if let Some(fluid) = &scene.fluid {
         let viscosity = short(1e3 * fluid.viscosity);
@@ -143,29 +117,4 @@ pub(super) fn measures(scene: &PlateImpact) -> Vec<(String, String)> {
     }
     facts.extend(materials([&plate.material, &outer.material, &inner.material]));
     facts
-}
-
-fn of_body(shape: &Shape, material: &Material) -> String {
-    let grams = |mass: f64| format!("{} g", short(1e3 * mass));
-    let tip = measure(shape.tip_radius(), "m");
-    match shape {
-        Shape::Sphere { radius } => format!("sphere, radius {}, {}", measure(*radius, "m"), material.name),
-        Shape::Compact { mass, .. } => {
-            format!("compact body, {}, tip radius {tip}, {}", grams(*mass), material.name)
-        }
-        Shape::Bender(bender) => format!(
-            "bender, length {}, tip mass {}, tip radius {tip}, {}",
-            measure(bender.length, "m"),
-            grams(bender.tip_mass),
-            material.name
-        ),
-        Shape::Stack(stack) => format!(
-            "stack, length {}, stroke {}, blocked force {}, {}, tip radius {tip}, {}",
-            measure(stack.length, "m"),
-            measure(stack.stroke, "m"),
-            measure(stack.blocked_force, "N"),
-            measure(stack.voltage, "V"),
-            material.name
-        ),
-    }
 }

@@ -3,15 +3,14 @@
 use super::{Point, Reduced};
 use crate::dynamics::StopReason;
 use crate::dynamics::balance_check;
-use crate::dynamics::contact_balance::ContactBalance;
 use crate::dynamics::error_control;
 use crate::dynamics::integration::{Converged, Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
 use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
+use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
 use crate::kinds::plate_impact::Kind;
 use crate::kinds::plate_impact::results::{PlateQuantities, quantities, values};
-use crate::kinds::plate_impact::series::{Done, Impacts, SAMPLES_PER_CONTACT};
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
 use crate::kinds::{Kind as _, SeriesModel};
@@ -40,7 +39,13 @@ fn unresolved(system: &System, result: &Integration, tolerance: f64) -> Option<S
 impl Reduced {
     fn impacts(&self) -> Impacts<'_> {
         let series = self.scene.plate_impact().ok().and_then(|setup| setup.series);
-        Impacts { system: &self.system, fluid: self.fluid.as_ref(), memory: self.memory.as_ref(), series }
+        Impacts {
+            system: &self.system,
+            fluid: self.fluid.as_ref(),
+            memory: self.memory.as_ref(),
+            series,
+            values: &|system, result| values(system, result).table(),
+        }
     }
 
     /// Runs the impact without keeping its history; `tolerance` bounds the efficiency's relative error from the
@@ -85,7 +90,7 @@ impl Reduced {
             let [outer, inner] = self.impacts().elastic_speeds(&onset, options);
             ElasticLimit { outer, inner }
         };
-        Ok(OnsetOfYield::new(materials, Bending::new(&setup.plate), &self.system)
+        Ok(OnsetOfYield::new(materials, Some(Bending::new(&setup.plate)), &self.system)
             .filter(|_| covered)
             .map(limit))
     }
@@ -213,8 +218,6 @@ impl Reduced {
         let end_time = self.scene.run.end_time;
         let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
         let even_steps = result.least_tolerance > 0.0;
-        let unsure =
-            result.error_estimate.filter(|error| !even_steps && *error > error_control::ENOUGH * tolerance);
         let mut warnings = scene::doubts(&self.scene);
         warnings.extend(self.warnings.iter().cloned());
         warnings.extend(truncation.warning);
@@ -222,11 +225,7 @@ impl Reduced {
             warnings.push("friction is omitted by the reduced models; the reference includes it".into());
         }
         warnings.extend(film_warning(result.losses.squeeze_film, system));
-        warnings.extend(unsure.map(|error| {
-            format!(
-                "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
-            )
-        }));
+        warnings.extend(uncertain(result, tolerance));
         if let (Some(memory), true) = (&self.memory, even_steps) {
             warnings.extend(memory.warnings.iter().cloned());
             warnings.extend(result.error_estimate.filter(|error| *error > memory::CHANGE / 3.0).map(|error| {
@@ -310,22 +309,6 @@ impl Reduced {
             ..Summary::of_reduced(&self.scene, self.model, system.modes, table)
         })
     }
-}
-
-/// Contacts that nearly join, part or touch once more, so that their number may be another.
-fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
-    let error = result.error_estimate.unwrap_or(0.0).max(tolerance);
-    let near = |contact: &ContactBalance| contact.least_turn <= error_control::ENOUGH * error;
-    let bodies = ["outer", "inner"].into_iter().zip(&result.contacts);
-    bodies
-        .filter(|(_, contact)| contact.contacts > 0 && near(contact))
-        .map(|(body, contact)| {
-            format!(
-                "the number of contacts of the {body} body, {}, is uncertain: the surfaces separate or approach by only {:.0e} of the largest approach",
-                contact.contacts, contact.least_turn
-            )
-        })
-        .collect()
 }
 
 impl SeriesModel for Reduced {

@@ -1,10 +1,11 @@
 //! The scene: a body that strikes a circular plate with a second body behind it, in a fluid or dry.
 
-mod keys;
-mod read;
+mod plate_keys;
+mod plate_reading;
 mod soundness;
 
-pub use keys::MAX_MODES;
+pub use plate_keys::MAX_MODES;
+pub(in crate::kinds) use plate_keys::PLATE;
 
 use super::NAME;
 use crate::error::Result;
@@ -79,12 +80,13 @@ impl Scene {
 
 impl Language for super::Kind {
     fn keys(&self) -> Vec<Field> {
-        keys::keys()
+        plate_keys::keys()
     }
 
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)> {
-        let setup = read::plate_impact(root, materials)?;
-        let reference = read::reference(root.optional_table("reference")?, setup.outer.is_centred())?;
+        let setup = plate_reading::plate_impact(root, materials)?;
+        let reference =
+            plate_reading::reference(root.optional_table("reference")?, setup.outer.is_centred())?;
         Ok((setup.into(), reference))
     }
 }

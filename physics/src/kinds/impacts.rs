@@ -1,15 +1,15 @@
 //! One impact, or a series of them in which every one finds the dents of those before.
 
-use super::results::values;
 use crate::dynamics::StopReason;
-use crate::dynamics::error_control::controlled;
+use crate::dynamics::contact_balance::ContactBalance;
+use crate::dynamics::error_control::{self, controlled};
 use crate::dynamics::integrate;
 use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::memory::{self, ForceHistory, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
-use crate::result::Impact;
+use crate::result::{Impact, Table};
 use crate::scene::Series;
 use std::collections::BTreeMap;
 
@@ -31,6 +31,8 @@ pub(super) struct Impacts<'a> {
     /// What the materials remember; elastic ones nothing.
     pub(super) memory: Option<&'a Memory>,
     pub(super) series: Option<Series>,
+    /// The values at the end of an integration.
+    pub(super) values: &'a dyn Fn(&System, &Integration) -> Table,
 }
 
 /// What a series comes to.
@@ -116,7 +118,7 @@ impl Impacts<'_> {
         self.series?;
         self.memory.filter(|memory| memory.yields().contains(&true))?;
         let result = self.elastic(options).ok().filter(|result| result.stop != StopReason::Cut)?;
-        values(self.system, &result).table().value("efficiency")
+        (self.values)(self.system, &result).value("efficiency")
     }
 
     /// Largest speeds of the outer body in m/s at which outer and inner contact of virgin bodies stay below their `onset`; `None` where
@@ -160,7 +162,7 @@ impl Impacts<'_> {
     }
 
     fn row(&self, number: u64, impact: &Integration) -> Impact {
-        let table = values(self.system, impact).table();
+        let table = (self.values)(self.system, impact);
         Impact {
             number,
             quantities: if impact.stop == StopReason::Cut { table.cut() } else { table },
@@ -169,4 +171,31 @@ impl Impacts<'_> {
             uncertainty: BTreeMap::new(),
         }
     }
+}
+
+/// A sentence if the final velocities of steps of adapted length have not converged to `tolerance`.
+pub(super) fn uncertain(result: &Integration, tolerance: f64) -> Option<String> {
+    let adapted = result.least_tolerance == 0.0;
+    let unsure = result.error_estimate.filter(|error| adapted && *error > error_control::ENOUGH * tolerance);
+    unsure.map(|error| {
+        format!(
+            "final velocities are uncertain by {error:.0e} of the impact speed: the many contacts of this impact amplify every error"
+        )
+    })
+}
+
+/// Contacts that nearly join, part or touch once more, so that their number may be another.
+pub(super) fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
+    let error = result.error_estimate.unwrap_or(0.0).max(tolerance);
+    let near = |contact: &ContactBalance| contact.least_turn <= error_control::ENOUGH * error;
+    let bodies = ["outer", "inner"].into_iter().zip(&result.contacts);
+    bodies
+        .filter(|(_, contact)| contact.contacts > 0 && near(contact))
+        .map(|(body, contact)| {
+            format!(
+                "the number of contacts of the {body} body, {}, is uncertain: the surfaces separate or approach by only {:.0e} of the largest approach",
+                contact.contacts, contact.least_turn
+            )
+        })
+        .collect()
 }

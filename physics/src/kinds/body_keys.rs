@@ -1,50 +1,9 @@
-//! The keys of a plate impact.
+//! The keys of bodies that strike and are struck, whatever lies between them, and of impacts in series.
 
-use crate::scene::flight::{FLIGHT, PLATE_FLIGHT};
 use crate::scene::grammar::{
-    BODY_MATERIAL, Bound, Field, Kind, MODELS, TIP_RADIUS, choice, one_way, only, optional, positive, pure,
-    required,
+    BODY_MATERIAL, Bound, Field, Kind, TIP_RADIUS, choice, one_way, only, optional, positive, pure, required,
 };
 use crate::scene::quantity::Dimension;
-
-/// Smallest and largest number of elements across the contact radius.
-const ELEMENTS: Bound = Bound { low: Some((2.0, true)), high: Some((64.0, true)) };
-const FRACTION: Bound = Bound { low: Some((0.0, false)), high: Some((1.0, true)) };
-
-/// The keys that only a plate impact has.
-pub(super) fn keys() -> Vec<Field> {
-    vec![
-        required("plate", Kind::Table(&PLATE), "Circular plate of constant thickness"),
-        required("outer", Kind::Table(&OUTER), "The body that strikes the plate from above"),
-        required("inner", Kind::Table(&INNER), "The body below the plate"),
-        optional("fluid", Kind::Table(&FLUID), "Fluid on the inner side; absent = dry"),
-        optional(
-            "series",
-            Kind::Table(&SERIES),
-            "Repeated impacts, each with the plastic indentations of those before",
-        ),
-        optional("reduced", Kind::Table(&REDUCED), "Settings of the reduced model"),
-        optional("reference", Kind::Table(&REFERENCE), "Settings of the finite-element reference"),
-        optional(
-            "uncertainty",
-            Kind::Uncertainty,
-            "How uncertain the scene's numbers are, by the names of their fields; changes no result",
-        ),
-        optional("flight", Kind::Table(&PLATE_FLIGHT), FLIGHT),
-    ]
-}
-
-static PLATE: [Field; 5] = [
-    required("radius", positive(Dimension::LENGTH), "Radius R of the plate"),
-    required("thickness", positive(Dimension::LENGTH), "Thickness t of the plate"),
-    required(
-        "edge",
-        Kind::Choice(&[choice("clamped"), choice("simply-supported"), choice("free")]),
-        "Support of the edge",
-    ),
-    required("material", Kind::Material, "Material of the plate, a name under [materials]"),
-    optional("damping_ratio", pure(Bound::NOT_NEGATIVE), "Modal damping ratio of every mode; 0 = undamped"),
-];
 
 const SHAPE_KIND: &str = "Shape of the body";
 const SPHERE_RADIUS: Field =
@@ -130,7 +89,7 @@ const TOWARDS: Bound = Bound {
     high: Some((std::f64::consts::FRAC_PI_2, false)),
 };
 
-static OUTER: [Field; 37] = [
+pub(super) static OUTER: [Field; 37] = [
     required(
         "kind",
         Kind::Choice(&[
@@ -261,7 +220,7 @@ static OUTER: [Field; 37] = [
             required(
                 "speed",
                 positive(Dimension::SPEED),
-                "Speed towards the plate; of a bender that of its tip",
+                "Speed towards what it strikes; of a bender that of its tip",
             ),
         ),
     ),
@@ -278,12 +237,12 @@ static OUTER: [Field; 37] = [
         optional(
             "angle",
             Kind::Quantity(Dimension::ANGLE, TOWARDS),
-            "Angle of the velocity against the plate's normal, positive = towards +x; absent = 0",
+            "Angle of the velocity against the normal of what it strikes, positive = towards +x; absent = 0",
         ),
     ),
 ];
 
-static INNER: [Field; 7] = [
+pub(super) static INNER: [Field; 7] = [
     required("kind", Kind::Choice(&[choice("sphere"), choice("compact")]), SHAPE_KIND),
     SPHERE_RADIUS,
     COMPACT_MASS,
@@ -292,49 +251,19 @@ static INNER: [Field; 7] = [
     optional(
         "gap",
         Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
-        "Initial distance to the plate; absent = 0",
+        "Initial distance to the plate, which changes nothing where there is none; absent = 0",
     ),
     optional(
         "speed",
         Kind::Quantity(Dimension::SPEED, Bound::ANY),
-        "Speed towards the plate at the outer body's first contact; negative = away from it, absent = 0",
+        "Speed towards the plate, or towards the outer body without one, at its first contact; negative = away from it, absent = 0",
     ),
-];
-
-/// A key of the shear-thinning viscosity law.
-const fn thinning(key: &'static str, kind: Kind, doc: &'static str) -> Field {
-    one_way(None, "shear thinning", "shear thinning", optional(key, kind, doc))
-}
-
-static FLUID: [Field; 10] = [
-    required("viscosity", positive(Dimension::VISCOSITY), "Dynamic viscosity"),
-    required("density", positive(Dimension::DENSITY), "Density of the fluid"),
-    required("minimum_gap", positive(Dimension::LENGTH), "Minimal gap of eq. (4)"),
-    optional("squeeze_film", Kind::Flag, "Whether the squeeze film of eq. (3) acts; absent = true"),
-    optional(
-        "added_mass_frequency_ratio",
-        pure(FRACTION),
-        "First wet over first dry eigenfrequency; absent = 1, no added mass",
-    ),
-    optional(
-        "plate_damping_ratio",
-        pure(Bound::NOT_NEGATIVE),
-        "Modal damping ratio of the wet plate; absent = that of the dry plate",
-    ),
-    optional("drag_coefficient", pure(Bound::NOT_NEGATIVE), "c_W of eq. (2); absent = 0, no drag"),
-    thinning(
-        "infinite_shear_viscosity",
-        positive(Dimension::VISCOSITY),
-        "Carreau's law: viscosity at high shear rates, `viscosity` being that at rest; absent = Newtonian",
-    ),
-    thinning("relaxation_time", positive(Dimension::TIME), "Carreau's law: time lambda"),
-    thinning("power_index", pure(FRACTION), "Carreau's law: power n"),
 ];
 
 /// Most impacts of a series.
 const MAX_IMPACTS: u64 = 200;
 
-static SERIES: [Field; 2] = [
+pub(super) static SERIES: [Field; 2] = [
     required("impacts", Kind::Count(1, MAX_IMPACTS), "Number of impacts at most"),
     optional(
         "sphere_spot",
@@ -342,46 +271,3 @@ static SERIES: [Field; 2] = [
         "Whether outer and inner body meet the plate each time with the same spot or with one that has not yielded yet; absent = same",
     ),
 ];
-
-/// Most modes of a plate that a model is built with: with so many the bodies of model C take a quarter of a minute, with twice as many ten
-/// times as long.
-pub const MAX_MODES: usize = 256;
-
-static REDUCED: [Field; 2] = [
-    optional("model", Kind::Choice(&MODELS), "The model to run when the command line names none"),
-    optional("modes", Kind::Count(1, MAX_MODES as u64), "Number of modes of the plate"),
-];
-
-static REFERENCE: [Field; 4] = [
-    optional(
-        "geometry",
-        Kind::Choice(&[choice("axisymmetric"), choice("solid")]),
-        "Geometry of the elements; absent = axisymmetric, for an off-centre or oblique impact solid",
-    ),
-    optional(
-        "elements_per_contact_radius",
-        pure(ELEMENTS),
-        "Elements across the contact radius at `paper` resolution; absent = 12, with solid geometry 3",
-    ),
-    only(
-        &["solid"],
-        optional(
-            "element_order",
-            Kind::Count(1, 2),
-            "Order of the tetrahedra: 1 linear, 2 quadratic; absent = 2",
-        ),
-    ),
-    only(
-        &["solid"],
-        optional(
-            "rigid",
-            Kind::Choice(&[choice("none"), choice("outer"), choice("inner"), choice("both")]),
-            "Spheres that are rigid; absent = none",
-        ),
-    ),
-];
-
-/// Default of `reference.elements_per_contact_radius` with axisymmetric geometry (bilinear elements).
-pub(super) const DEFAULT_ELEMENTS: f64 = 12.0;
-/// The same with solid geometry (quadratic elements).
-pub(super) const DEFAULT_SOLID_ELEMENTS: f64 = 3.0;

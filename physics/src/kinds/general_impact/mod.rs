@@ -1,0 +1,96 @@
+//! An outer body strikes a wall or another body: reduced model C, which has no modes here. With a plate between, see
+//! [`super::plate_impact`].
+
+mod checks;
+mod model;
+mod results;
+mod scene;
+mod soundness;
+
+pub use results::{CURVES, ImpactQuantities};
+pub use scene::{GeneralImpact, Struck, Wall};
+
+use super::SeriesModel;
+use crate::contact::Hertz;
+use crate::error::{Error, Result};
+use crate::result::limit::{self, QUASI_STATIC, SMALL_ROTATION};
+use crate::result::{Curve, History, Limit, Outcome, Quantity, Statement, Summary, Table};
+use crate::scene::{Model, Scene, Shape};
+use model::ContactModel;
+
+/// Its name in scene files.
+const NAME: &str = "impact";
+
+/// The registry's entry.
+pub struct Kind;
+
+impl super::Kind for Kind {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn models(&self) -> &'static [Model] {
+        &[Model::C]
+    }
+
+    fn quantities(&self) -> &'static [Quantity] {
+        ImpactQuantities::ALL
+    }
+
+    fn curves(&self) -> &'static [Curve] {
+        &CURVES
+    }
+
+    fn has(&self, scene: &Scene, name: &str) -> bool {
+        scene.general_impact().is_ok_and(|setup| setup.has(name))
+    }
+
+    fn model(&self, scene: &Scene, model: Model, modes: Option<usize>) -> Result<Box<dyn SeriesModel>> {
+        if model != Model::C {
+            return Err(Error::Usage(format!(
+                "model {model}: `{}` has no plate, and only model C does without one",
+                scene.name
+            )));
+        }
+        if let Some(modes) = modes {
+            return Err(Error::Usage(format!(
+                "--modes {modes}: `{}` has no plate, so that its model has no modes",
+                scene.name
+            )));
+        }
+        Ok(Box::new(ContactModel::new(scene)?))
+    }
+
+    fn judge(&self, scene: &Scene, summary: &mut Summary, _: Option<&History>) {
+        let Ok(setup) = scene.general_impact() else { return };
+        summary.set_limits(limits(setup, summary));
+    }
+
+    fn shown(&self, scene: &Scene, history: &History) -> Table {
+        scene
+            .general_impact()
+            .map_or_else(|_| Table::new(self.quantities()), |setup| checks::shown(setup, history))
+    }
+
+    fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {
+        scene.general_impact().map_or_else(|_| Vec::new(), |setup| checks::checks(setup, outcome))
+    }
+}
+
+/// How near a result comes to the bounds of the theories behind it.
+fn limits(setup: &GeneralImpact, summary: &Summary) -> Vec<Limit> {
+    let materials = setup.materials();
+    let outer = setup.outer.shape.tip_radius();
+    let curvature = 1.0 / outer + setup.inner().map_or(0.0, |inner| 1.0 / inner.shape.tip_radius());
+    let law = Hertz::new(1.0 / curvature, &setup.outer.material, &setup.face());
+    let is_elastic = materials.iter().all(|material| material.is_elastic());
+    let force = summary.value("outer_force_peak").filter(|_| is_elastic);
+    let mut limits: Vec<Limit> =
+        force.into_iter().flat_map(|force| limit::of_contact("outer", &law, force, &materials)).collect();
+    if let (Shape::Bender(beam), Some(bender)) = (&setup.outer.shape, summary.bender) {
+        limits.push(SMALL_ROTATION.at("outer", bender.drive.tip_deflection.abs() / beam.length));
+    }
+    let slowest = materials.iter().map(|m| m.bar_wave_speed()).fold(f64::INFINITY, f64::min);
+    limits.push(QUASI_STATIC.at("outer", setup.closing_speed() / slowest));
+    limits
+}

@@ -1,0 +1,268 @@
+//! The reduced model: rigid bodies, or a bender or stack with its modes, joined by one contact.
+//!
+//! A rigid outer body and the inner one are solved as the inner one sees them, at rest: however small the speed at which they approach each
+//! other is beside their own, it is the measure of all errors.
+
+use super::scene::sphere_radius;
+use super::{CURVES, GeneralImpact, ImpactQuantities, Kind, Struck};
+use crate::body::free_sphere::sphere_residual;
+use crate::dynamics::integration::{Converged, Integration, Options};
+use crate::dynamics::memory::{self, Memory, OnsetOfYield};
+use crate::dynamics::system::System;
+use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, integrate};
+use crate::error::{Error, Result};
+use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
+use crate::kinds::{Kind as _, SeriesModel};
+use crate::result::{
+    BenderSummary, CUT, ElasticLimit, History, Outcome, Point, StackSummary, Summary, Table,
+};
+use crate::scene::{self, Inner, Model, Outer, Scene};
+use std::time::Instant;
+
+/// Tolerance of the runs that compare force peaks with and without what the model leaves out.
+const ROUGH: f64 = 1e-6;
+/// Change of the force peak by it from which on there is a warning.
+const NOTABLE: f64 = 0.01;
+
+/// An impact on a wall or another body, ready to run.
+#[derive(Debug)]
+pub(super) struct ContactModel {
+    scene: Scene,
+    /// The impact along the common normal, and the share of the outer body's energy that it has.
+    setup: GeneralImpact,
+    normal_share: f64,
+    system: System,
+    /// Velocity in m/s along z of the frame in which `system` moves.
+    frame: f64,
+    memory: Option<Memory>,
+}
+
+impl ContactModel {
+    /// Of `scene`.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] for another kind of scene, [`Error::Solver`] for a stack that does not reach what it strikes, and as [`Memory::new`].
+    pub(super) fn new(scene: &Scene) -> Result<Self> {
+        let given = scene.general_impact()?;
+        let setup = given.along_normal().into_owned();
+        let frame = if setup.outer.shape.is_mounted() { 0.0 } else { setup.struck_velocity() };
+        let outer = MovingBody::outer(&Outer { speed: setup.outer.speed + frame, ..setup.outer.clone() })?;
+        let face = setup.face();
+        let system = match &setup.struck {
+            Struck::Wall(_) => System::on_wall(outer, &face),
+            Struck::Inner(inner) => {
+                let seen = Inner { speed: inner.speed - frame, gap: 0.0, ..inner.clone() };
+                System::of_two_bodies(outer, MovingBody::inner(&seen))
+            }
+        };
+        let memory = Memory::new([&setup.outer.material, &face, &face], None, &system)?;
+        let normal_share = given.outer.angle.cos().powi(2);
+        Ok(Self { scene: scene.clone(), normal_share, system, frame, memory, setup: setup.clone() })
+    }
+
+    /// The results of an integration; those that a scene does not have are not determined.
+    fn table(&self, result: &Integration) -> Table {
+        let outer = &self.setup.outer;
+        let [first, second] = result.velocity;
+        let contact = &result.contacts[0];
+        let velocities = [first + self.frame, second + self.frame];
+        let energy = |mass: f64, speed: f64| 0.5 * mass * speed * speed;
+        let before = energy(self.system.masses[0], outer.speed) / self.normal_share;
+        let mut table = ImpactQuantities {
+            efficiency: energy(self.system.masses[1], velocities[1]) / before,
+            outer_velocity_final: velocities[0],
+            inner_velocity_final: velocities[1],
+            outer_force_peak: contact.force_peak,
+            outer_contact_end: contact.end,
+            outer_contacts: contact.contacts,
+            outer_restitution: (first - second) / self.setup.closing_speed(),
+            outer_impulse: contact.impulse,
+        }
+        .table();
+        let pressed: &[&str] = match result.stop {
+            StopReason::Pressed => &["outer_contact_end", "outer_contacts", "outer_impulse"],
+            _ => &[],
+        };
+        let absent = ImpactQuantities::ALL.iter().map(|quantity| quantity.name);
+        let absent = absent.filter(|name| !self.setup.has(name));
+        for name in absent.chain(pressed.iter().copied()) {
+            table.value_mut(name).into_iter().for_each(|value| *value = None);
+        }
+        if result.stop == StopReason::Cut { table.cut() } else { table }
+    }
+
+    /// What `of` makes of the impacts.
+    fn with_impacts<R>(&self, of: impl FnOnce(Impacts) -> R) -> R {
+        let values = |_: &System, result: &Integration| self.table(result);
+        of(Impacts {
+            system: &self.system,
+            fluid: None,
+            memory: self.memory.as_ref(),
+            series: self.setup.series,
+            values: &values,
+        })
+    }
+
+    fn options(&self, tolerance: f64) -> Options {
+        Options { tolerance, end_time: self.scene.run.end_time, ..Options::default() }
+    }
+
+    /// The summary, what the materials remembered when the last impact began, and with which steps it converged.
+    fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>, Option<Converged>)> {
+        let start = Instant::now();
+        let options = Options { heat: true, ..self.options(tolerance) };
+        let Done { last, impacts, memory, warnings } = self.with_impacts(|all| all.all(&options))?;
+        let seconds = start.elapsed().as_secs_f64();
+        let mut summary = self.summary(&last, tolerance)?;
+        summary.solve_seconds = seconds;
+        summary.warnings.extend(warnings);
+        summary.impacts = impacts;
+        summary.elastic_efficiency = self.with_impacts(|all| all.elastic_efficiency(&options));
+        summary.elastic_limit = self.elastic_limit(&options);
+        Ok((summary, memory, last.converged))
+    }
+
+    /// `None` without yield strengths, and where a body relaxes or is held.
+    fn elastic_limit(&self, options: &Options) -> Option<ElasticLimit> {
+        let face = self.setup.face();
+        let relaxes = self.setup.materials().iter().any(|material| !material.relaxation.is_empty());
+        if self.setup.outer.shape.is_mounted() || relaxes {
+            return None;
+        }
+        let onset = OnsetOfYield::new([&self.setup.outer.material, &face, &face], None, &self.system)?;
+        let [closing, _] = self.with_impacts(|all| all.elastic_speeds(&onset, options));
+        let outer = closing.map(|speed| speed - self.frame).filter(|speed| *speed > 0.0);
+        Some(ElasticLimit { outer, inner: None })
+    }
+
+    /// Relative change of the force peak by what spheres yield beyond Hertz's half-spaces, which the model leaves out.
+    fn left_out(&self) -> f64 {
+        let hit = self.system.hertz_impact();
+        let patch = (self.system.laws[0].tip_radius * hit.approach_peak()).sqrt();
+        let inner = self.setup.inner().map(|inner| (&inner.shape, &inner.material));
+        let bodies = [Some((&self.setup.outer.shape, &self.setup.outer.material)), inner];
+        let residual = bodies.into_iter().flatten().filter_map(|(shape, material)| {
+            sphere_radius(shape).map(|radius| sphere_residual(radius, material, patch))
+        });
+        let softer = self.system.softer([residual.sum(), 0.0, 0.0]);
+        let peak = |system: &System| {
+            let result = integrate(system, None, &self.options(ROUGH)).ok()?;
+            Some(result.contacts[0].force_peak).filter(|peak| *peak > 0.0)
+        };
+        let change = peak(&self.system).zip(peak(&softer)).map(|(own, softer)| (softer / own - 1.0).abs());
+        change.unwrap_or(f64::INFINITY)
+    }
+
+    fn summary(&self, result: &Integration, tolerance: f64) -> Result<Summary> {
+        let tolerance = tolerance.max(result.least_tolerance);
+        let is_cut = result.stop == StopReason::Cut;
+        let left_out = self.left_out();
+        let mut warnings = scene::doubts(&self.scene);
+        warnings.extend((left_out > NOTABLE).then(|| {
+            format!(
+                "the model omits how spheres deform beyond their contact, which changes the peak force by about {:.1} %",
+                100.0 * left_out
+            )
+        }));
+        warnings.extend(uncertain(result, tolerance));
+        if let (Some(memory), true) = (&self.memory, result.least_tolerance > 0.0) {
+            warnings.extend(memory.warnings.iter().cloned());
+            warnings.extend(result.error_estimate.filter(|error| *error > memory::CHANGE / 3.0).map(|error| {
+                format!("velocities and peak forces are uncertain by {error:.0e}: the step length has not converged")
+            }));
+        }
+        if result.contacts[0].contacts == 0 {
+            warnings.push("the bodies are never in contact".into());
+        }
+        warnings.extend(uncountable(result, tolerance));
+        warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
+        let face_yields = self.setup.face().plasticity().is_some();
+        warnings.extend((face_yields && self.setup.inner().is_some()).then(|| {
+            "the law of plastic contacts takes the inner body's tip as flat and the outer one's as more curved instead".into()
+        }));
+        if self.normal_share < 1.0 {
+            warnings.push("motion along the surfaces is omitted by the reduced model".into());
+        }
+        warnings.extend(is_cut.then(|| CUT.to_owned()));
+        let transmitted = self.setup.inner_mass().map(|mass| 0.5 * mass * result.velocity[1].powi(2));
+        let transmitted = transmitted.filter(|_| !is_cut);
+        let system = &self.system;
+        Ok(Summary {
+            energy_residual: Some(result.energy_residual),
+            momentum_residual: Some(result.momentum_residual),
+            steps: Some(result.steps),
+            integration_error: result.error_estimate,
+            truncation_error: Some(left_out),
+            bender: system.drive.map(|drive| BenderSummary {
+                strain_energy_efficiency: transmitted.map(|energy| energy / drive.strain_energy),
+                drive,
+            }),
+            stack: result.supplied.map(|supplied| StackSummary {
+                electrical_energy: supplied.taken,
+                mechanical_energy: supplied.given,
+                share: transmitted.map(|energy| energy / supplied.taken),
+            }),
+            losses: self.memory.is_some().then_some(result.losses),
+            warnings,
+            ..Summary::of_reduced(&self.scene, Model::C, 0, self.table(result))
+        })
+    }
+
+    /// The curves of the scene's bodies from all those of the dynamics.
+    fn history(&self, all: &History) -> History {
+        let own = CURVES.iter().filter(|curve| self.setup.has(curve.name));
+        let curves = own.map(|curve| {
+            let mut curve = curve.clone();
+            curve.values.clone_from(&all[curve.name]);
+            let moves = self.frame != 0.0;
+            for (value, time) in curve.values.iter_mut().zip(&all.time).filter(|_| moves) {
+                *value += match curve.unit {
+                    "m" => self.frame * time,
+                    "m/s" => self.frame,
+                    _ => 0.0,
+                };
+            }
+            curve
+        });
+        History { time: all.time.clone(), curves: curves.collect() }
+    }
+}
+
+impl SeriesModel for ContactModel {
+    fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
+        let (mut summary, memory, converged) = self.unjudged(tolerance)?;
+        let sample_interval = Some(self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
+        let options = Options { sample_interval, converged, ..self.options(tolerance) };
+        let (result, _) = self.with_impacts(|all| all.one(&options, memory.as_ref()))?;
+        let all = result.history.ok_or_else(|| Error::Internal("a history was requested".into()))?;
+        let history = self.history(&all);
+        summary.samples = Some(history.len());
+        Kind.judge(&self.scene, &mut summary, Some(&history));
+        Ok(Outcome { summary, history })
+    }
+
+    fn run(&self, tolerance: f64) -> Result<Summary> {
+        let (mut summary, ..) = self.unjudged(tolerance)?;
+        Kind.judge(&self.scene, &mut summary, None);
+        Ok(summary)
+    }
+
+    /// `tolerance` bounds the error of the time integration in all results.
+    fn point(&self, tolerance: f64) -> Result<Point<Table>> {
+        let options = error_control::all_within(tolerance, self.options(tolerance));
+        let result = self.with_impacts(|all| all.all(&options))?.last;
+        let least = result.least_tolerance;
+        balance_check(result.energy_residual, result.momentum_residual, tolerance.max(least))?;
+        if result.stop == StopReason::Cut {
+            return Err(Error::Solver(CUT.into()));
+        }
+        let enough = options.results.unwrap_or(error_control::ENOUGH * options.tolerance).max(least);
+        Ok(Point {
+            quantities: self.table(&result),
+            energy_residual: result.energy_residual,
+            momentum_residual: result.momentum_residual,
+            steps: result.steps,
+            converged: result.error_estimate.is_none_or(|error| error <= enough),
+        })
+    }
+}

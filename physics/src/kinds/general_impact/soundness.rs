@@ -1,0 +1,154 @@
+//! Impacts that can't be, and numbers that are hardly meant.
+
+use super::{GeneralImpact, NAME};
+use crate::scene::Bodies;
+use crate::scene::collision::{Collision, Rule, broken};
+use crate::scene::plausibility::{material, outside};
+use crate::scene::values::{Checked, Node};
+
+/// Sizes of what was measured with these methods, in m.
+const LENGTH: [f64; 2] = [1e-6, 1.0];
+/// Outer bodies that are held at one end.
+const MOUNTED: [&str; 2] = ["bender", "stack"];
+
+/// Tables and keys of a scene that exclude or need each other.
+pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
+    let has = |key: &str| root.0.contains_key(key);
+    let table = |key: &str| root.optional_table(key).ok().flatten();
+    let (wall, outer, run) = (table("wall"), table("outer"), table("run"));
+    let is_rigid = wall.as_ref().is_some_and(|wall| matches!(wall.0.get("rigid"), Some(Checked::Flag(true))));
+    let has_material = wall.as_ref().is_some_and(|wall| wall.0.contains_key("material"));
+    let is_mounted = outer.is_some_and(|outer| outer.text("kind").is_ok_and(|kind| MOUNTED.contains(&kind)));
+    let ends = run.is_some_and(|run| run.0.contains_key("end_time"));
+    broken(vec![
+        Rule {
+            fields: vec!["wall"],
+            holds: !(has("plate") && has("wall")),
+            message: "the scene has [plate] and [wall], but the outer body strikes one of them".into(),
+            help: "remove [plate] or [wall]",
+        },
+        Rule {
+            fields: vec!["inner"],
+            holds: !(has("wall") && has("inner")),
+            message: "the scene has [wall] and [inner], but nothing lies behind a wall".into(),
+            help: "remove [inner] or [wall]",
+        },
+        Rule {
+            fields: vec!["kind"],
+            holds: has("wall") || has("inner"),
+            message: "`inner` is missing: without [plate] and [wall] the outer body strikes the inner one"
+                .into(),
+            help: "add [inner] with kind, radius and material; or [wall] or [plate]",
+        },
+        Rule {
+            fields: vec!["wall.rigid"],
+            holds: !(has_material && is_rigid),
+            message: "`wall.material` and `wall.rigid` exclude each other: a rigid wall does not yield"
+                .into(),
+            help: "remove one of them",
+        },
+        Rule {
+            fields: vec!["wall"],
+            holds: wall.is_none() || has_material || is_rigid,
+            message: "`wall.material` is missing: the wall is of a material or rigid".into(),
+            help: "add `material = \"...\"`, a name under [materials], or `rigid = true`",
+        },
+        Rule {
+            fields: vec!["outer.kind"],
+            holds: !is_mounted || wall.is_none() || ends,
+            message:
+                "`run.end_time` is missing: a bender or stack is held and strikes a wall again and again"
+                    .into(),
+            help: "add [run] with `end_time`, the time in which its strikes count",
+        },
+        Rule {
+            fields: vec!["friction"],
+            holds: root.number_or("friction", 0.0).is_ok_and(|friction| friction == 0.0),
+            message: "`friction` has no effect: bodies that meet along their common normal do not slide"
+                .into(),
+            help: "remove `friction`",
+        },
+    ])
+}
+
+impl Bodies for GeneralImpact {
+    fn kind(&self) -> &'static str {
+        NAME
+    }
+
+    fn collisions(&self) -> Vec<Collision> {
+        let materials = self.materials();
+        let is_elastic = materials.iter().all(|material| material.is_elastic());
+        let yields = materials.iter().any(|material| material.plasticity().is_some());
+        let relaxes = materials.iter().any(|material| !material.relaxation.is_empty());
+        let closing = self.closing_speed();
+        broken(vec![
+            Rule {
+                fields: vec!["outer.offset"],
+                holds: self.outer.offset == 0.0,
+                message: format!(
+                    "`outer.offset` is {} m, but it is a distance from the axis of a plate, and there is no plate",
+                    self.outer.offset
+                ),
+                help: "remove `outer.offset`",
+            },
+            Rule {
+                fields: vec!["inner.speed", "outer.speed"],
+                holds: closing > 0.0,
+                message: format!(
+                    "`inner.speed` is {} m/s, but it must be greater than {} m/s: the inner body moves away faster than the outer one follows",
+                    self.struck_velocity(),
+                    -self.outer.normal_speed()
+                ),
+                help: "raise `inner.speed` or `outer.speed`; both are positive towards the other body",
+            },
+            Rule {
+                fields: vec!["outer.angle", "series"],
+                holds: self.outer.angle == 0.0 || self.series.is_none(),
+                message: "`outer.angle`: oblique impacts in series strike another place each time".into(),
+                help: "remove `outer.angle` or [series]",
+            },
+            Rule {
+                fields: vec!["outer.kind"],
+                holds: is_elastic || !self.outer.shape.is_mounted(),
+                message:
+                    "`outer.kind` is \"bender\" or \"stack\": it is not supported with a plastic or viscoelastic material"
+                        .into(),
+                help: "use a sphere or a compact body, or remove `hardening`, `relaxation` and `loss_factor` of the materials",
+            },
+            Rule {
+                fields: vec!["series"],
+                holds: self.series.is_none() || !self.outer.shape.is_mounted(),
+                message: "`outer.kind` is \"bender\" or \"stack\": it is not covered in series".into(),
+                help: "remove [series], or use another outer body",
+            },
+            Rule {
+                fields: vec!["outer.material"],
+                holds: !(yields && relaxes),
+                message: "the contact joins a plastic and a viscoelastic material, which is not supported".into(),
+                help: "remove `hardening` of the one or the relaxation of the other",
+            },
+        ])
+    }
+
+    fn doubts(&self) -> Vec<String> {
+        let mut found: Vec<String> = Vec::new();
+        for doubt in self.materials().into_iter().flat_map(material) {
+            if !found.contains(&doubt) {
+                found.push(doubt);
+            }
+        }
+        let inner = self.inner().map(|inner| ("inner's tip radius", inner.shape.tip_radius()));
+        let lengths = [("outer's tip radius", self.outer.shape.tip_radius())].into_iter().chain(inner);
+        found.extend(lengths.filter_map(|(name, value)| outside(name, value, LENGTH, "m")));
+        if self.inner().is_some_and(|inner| inner.gap > 0.0) {
+            found.push("inner.gap changes no result: nothing lies between the bodies, and t = 0 is their first contact".into());
+        }
+        if self.series.is_some() && self.materials().iter().all(|material| material.plasticity().is_none()) {
+            found.push(
+                "series: no material yields, so that all impacts are equal; specify `yield_strength` and `hardening` of one".into(),
+            );
+        }
+        found
+    }
+}

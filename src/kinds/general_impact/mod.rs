@@ -1,0 +1,51 @@
+//! Impacts without a plate: an outer body strikes a wall or another body.
+
+mod features;
+
+pub use impactcheck_physics::kinds::general_impact::*;
+
+use super::{Feature, Starter, Use};
+use crate::scene::Scene;
+
+impl super::Kind for Kind {
+    fn serves(&self, purpose: Use) -> bool {
+        purpose == Use::Samples
+    }
+
+    fn starter(&self) -> Starter {
+        Starter { about: "A body strikes a wall or another body", text: include_str!("starter.toml") }
+    }
+
+    fn features(&self) -> &'static [Feature] {
+        &features::FEATURES
+    }
+
+    fn has_mesh(&self) -> bool {
+        false
+    }
+
+    fn has_reference(&self) -> bool {
+        false
+    }
+
+    fn is_resumable(&self, _: &Scene) -> bool {
+        false
+    }
+
+    fn yields(&self, scene: &Scene) -> bool {
+        scene.general_impact().is_ok_and(yields)
+    }
+
+    fn objective(&self) -> &'static str {
+        "outer_restitution"
+    }
+
+    fn starts_in_contact(&self, _: &Scene) -> bool {
+        true
+    }
+}
+
+/// Whether a material of `setup` deforms plastically.
+fn yields(setup: &GeneralImpact) -> bool {
+    setup.materials().iter().any(|material| material.plasticity().is_some())
+}

@@ -1,0 +1,70 @@
+//! How an impact on a wall or another body is shown.
+
+mod picture;
+
+use super::Presentation;
+use crate::report::SceneReport;
+use crate::report::figure::geometry::PanelOf;
+use crate::report::page::section::{self, Section};
+use crate::report::summary_column::SummaryColumn;
+use crate::scene::Scene;
+use maud::{Markup, html};
+
+pub(super) struct Direct;
+
+impl Presentation for Direct {
+    fn columns(&self) -> &'static [SummaryColumn] {
+        const COLUMNS: [SummaryColumn; 5] = [
+            SummaryColumn::new("efficiency", "", "efficiency", "efficiency"),
+            SummaryColumn::new("restitution", "", "restitution", "outer_restitution"),
+            SummaryColumn::new("peak force", "", "peak force", "outer_force_peak"),
+            SummaryColumn::new("contact ends", "", "end of the contact", "outer_contact_end"),
+            SummaryColumn::new("impulse", "", "impulse of the contact force", "outer_impulse"),
+        ];
+        &COLUMNS
+    }
+
+    fn panels(&self) -> &'static [PanelOf] {
+        const PANELS: [PanelOf; 3] = [
+            PanelOf {
+                label: "Displacement in µm",
+                factor: 1e6,
+                curves: &[("outer", "outer_displacement"), ("inner", "inner_displacement")],
+                boxes: false,
+            },
+            PanelOf {
+                label: "Velocity in mm/s",
+                factor: 1e3,
+                curves: &[("outer", "outer_velocity"), ("inner", "inner_velocity")],
+                boxes: false,
+            },
+            PanelOf {
+                label: "Contact force in N",
+                factor: 1.0,
+                curves: &[("outer", "outer_force")],
+                boxes: false,
+            },
+        ];
+        &PANELS
+    }
+
+    fn curves_caption(&self) -> &'static str {
+        "Displacement and velocity of the outer body and of the inner one, if there is one, signed along z (from the inner to the outer \
+         side), and the contact force, positive in compression."
+    }
+
+    fn scene_drawing(&self, report: &SceneReport) -> Markup {
+        report.scene.general_impact().map_or_else(|_| html! {}, picture::picture)
+    }
+
+    fn measures(&self, scene: &Scene) -> Vec<(String, String)> {
+        scene.general_impact().map_or_else(|_| Vec::new(), picture::measures)
+    }
+
+    fn sections(&self, report: &SceneReport) -> Vec<Section> {
+        vec![
+            Section::new("impacts", "Impacts in series", section::impacts::impacts_html(report)),
+            Section::new("budget", "Error budget", section::budget::budget_html(&report.comparison)),
+        ]
+    }
+}
