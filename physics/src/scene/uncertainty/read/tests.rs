@@ -162,7 +162,12 @@ fn a_written_scene_keeps_its_distributions_about_the_new_numbers() {
 
 #[test]
 fn the_schema_knows_the_table() {
-    let table = &schema()["properties"]["uncertainty"];
+    // several kinds have it, each in its rule
+    let schema = schema();
+    let rules = schema["allOf"].as_array().expect("rules");
+    let of_kind = |rule: &serde_json::Value| rule["then"]["properties"]["uncertainty"].clone();
+    let table =
+        &rules.iter().map(of_kind).find(|table| table["properties"].is_object()).expect("a kind has it");
     assert!(table["properties"]["correlations"].is_object(), "{table}");
     assert_eq!(table["additionalProperties"]["anyOf"].as_array().map(Vec::len), Some(5), "{table}");
 }
