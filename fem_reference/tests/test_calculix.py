@@ -133,7 +133,7 @@ def test_the_momentum_of_a_free_plate_and_both_spheres_lasts(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "message"),
     [
         ({"friction": 0.3}, "friction is 0.3; it must be 0"),
         ({"plate__damping_ratio": 0.01}, "plate.damping_ratio is 0.01; it must be 0"),
@@ -175,7 +175,7 @@ def pretended(folder: Path, monkeypatch: pytest.MonkeyPatch, does: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("does", "told"),
+    ("does", "message"),
     [
         (
             'printf " actual total time=1.2e-3\\n *ERROR: solution seems to diverge;\\n        '

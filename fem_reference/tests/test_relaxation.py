@@ -152,7 +152,7 @@ def test_damping_and_relaxation_together() -> None:
 
 
 @pytest.mark.parametrize(
-    "beside",
+    "other_loss",
     [
         {"friction": 0.3},
         {"fluid": WATER},
