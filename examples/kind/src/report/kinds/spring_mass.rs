@@ -9,10 +9,10 @@ pub(super) struct Spring;
 impl Presentation for Spring {
     fn columns(&self) -> &'static [SummaryColumn] {
         const COLUMNS: [SummaryColumn; 4] = [
-            SummaryColumn::new("efficiency", "efficiency", "efficiency"),
-            SummaryColumn::new("velocity", "velocity", "sphere_velocity_final"),
-            SummaryColumn::new("force peak", "force peak", "sphere_force_peak"),
-            SummaryColumn::new("end of contact", "end of contact", "sphere_contact_end"),
+            SummaryColumn::new("efficiency", "", "efficiency", "efficiency"),
+            SummaryColumn::new("velocity", "", "final velocity of the sphere", "sphere_velocity_final"),
+            SummaryColumn::new("peak force", "", "peak force", "sphere_force_peak"),
+            SummaryColumn::new("contact ends", "", "end of the contact", "sphere_contact_end"),
         ];
         &COLUMNS
     }
