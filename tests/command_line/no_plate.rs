@@ -40,6 +40,19 @@ fn what_needs_a_reference_says_that_there_is_none_and_what_works_instead() {
     }
 }
 
+/// The force peak of an elastic impact is compared with Hertz's.
+#[test]
+fn a_wall_is_covered_by_a_closed_form() {
+    let folder = starter();
+    let document = run(folder.path(), &["-q", "coverage", "wall.toml", "--json"], 0);
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    let features = document["features"].as_array().unwrap();
+    let wall = features.iter().find(|feature| feature["feature"] == "wall").unwrap();
+    let rows = wall["partners"].as_array().unwrap();
+    let exact = rows.iter().find(|row| row["partner"] == "closed form").unwrap();
+    assert!(exact["worst_relative"].as_f64().unwrap() < 1e-8, "{exact}");
+}
+
 /// Another program's curves without those that a wall lacks; the gate passes and can fail.
 #[test]
 fn an_imported_result_is_compared_and_shown() {

@@ -4,8 +4,9 @@ mod features;
 
 pub use impactcheck_physics::kinds::general_impact::*;
 
-use super::{Feature, Starter, Use};
-use crate::scene::Scene;
+use super::{ClosedForm, Feature, Form, Starter, Use};
+use crate::error::Result;
+use crate::scene::{Model, Scene};
 
 impl super::Kind for Kind {
     fn serves(&self, purpose: Use) -> bool {
@@ -30,6 +31,16 @@ impl super::Kind for Kind {
 
     fn is_resumable(&self, _: &Scene) -> bool {
         false
+    }
+
+    fn closed_forms(&self, scene: &Scene) -> Result<Vec<ClosedForm>> {
+        let of = |relative| ClosedForm {
+            form: Form::Hertz,
+            models: &[Model::C],
+            quantity: "outer_force_peak",
+            relative,
+        };
+        Ok(difference_from_hertz(scene)?.map(of).into_iter().collect())
     }
 
     fn yields(&self, scene: &Scene) -> bool {

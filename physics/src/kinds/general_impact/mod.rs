@@ -7,6 +7,7 @@ mod results;
 mod scene;
 mod soundness;
 
+pub use model::difference_from_hertz;
 pub use results::{CURVES, ImpactQuantities};
 pub use scene::{GeneralImpact, Struck, Wall};
 

@@ -1,7 +1,7 @@
 //! The reduced model: rigid bodies, or a bender or stack with its modes, joined by one contact.
 //!
-//! A rigid outer body and the inner one are solved as the inner one sees them, at rest: however small the speed at which they approach each
-//! other is beside their own, it is the measure of all errors.
+//! A rigid outer body and the inner one are solved in the frame of the inner one: errors are then relative to the closing speed, however
+//! small it is compared with their own speeds.
 
 use super::scene::sphere_radius;
 use super::{CURVES, GeneralImpact, ImpactQuantities, Kind, Struck};
@@ -19,8 +19,8 @@ use crate::result::{
 use crate::scene::{self, Inner, Model, Outer, Scene};
 use std::time::Instant;
 
-/// Tolerance of the runs that compare force peaks with and without what the model leaves out.
-const ROUGH: f64 = 1e-6;
+/// Tolerance of the runs that compare force peaks with and without what the model omits.
+const LOW_ACCURACY: f64 = 1e-6;
 /// Change of the force peak by it from which on there is a warning.
 const NOTABLE: f64 = 0.01;
 
@@ -122,7 +122,7 @@ impl ContactModel {
         Ok((summary, memory, last.converged))
     }
 
-    /// `None` without yield strengths, and where a body relaxes or is held.
+    /// `None` without yield strengths, and where a body relaxes or is clamped.
     fn elastic_limit(&self, options: &Options) -> Option<ElasticLimit> {
         let face = self.setup.face();
         let relaxes = self.setup.materials().iter().any(|material| !material.relaxation.is_empty());
@@ -135,8 +135,8 @@ impl ContactModel {
         Some(ElasticLimit { outer, inner: None })
     }
 
-    /// Relative change of the force peak by what spheres yield beyond Hertz's half-spaces, which the model leaves out.
-    fn left_out(&self) -> f64 {
+    /// Relative change of the force peak by the flexibility of spheres beyond that of Hertz's half-spaces, which the model omits.
+    fn omitted_flexibility(&self) -> f64 {
         let hit = self.system.hertz_impact();
         let patch = (self.system.laws[0].tip_radius * hit.approach_peak()).sqrt();
         let inner = self.setup.inner().map(|inner| (&inner.shape, &inner.material));
@@ -146,7 +146,7 @@ impl ContactModel {
         });
         let softer = self.system.softer([residual.sum(), 0.0, 0.0]);
         let peak = |system: &System| {
-            let result = integrate(system, None, &self.options(ROUGH)).ok()?;
+            let result = integrate(system, None, &self.options(LOW_ACCURACY)).ok()?;
             Some(result.contacts[0].force_peak).filter(|peak| *peak > 0.0)
         };
         let change = peak(&self.system).zip(peak(&softer)).map(|(own, softer)| (softer / own - 1.0).abs());
@@ -156,12 +156,12 @@ impl ContactModel {
     fn summary(&self, result: &Integration, tolerance: f64) -> Result<Summary> {
         let tolerance = tolerance.max(result.least_tolerance);
         let is_cut = result.stop == StopReason::Cut;
-        let left_out = self.left_out();
+        let omitted = self.omitted_flexibility();
         let mut warnings = scene::doubts(&self.scene);
-        warnings.extend((left_out > NOTABLE).then(|| {
+        warnings.extend((omitted > NOTABLE).then(|| {
             format!(
                 "the model omits how spheres deform beyond their contact, which changes the peak force by about {:.1} %",
-                100.0 * left_out
+                100.0 * omitted
             )
         }));
         warnings.extend(uncertain(result, tolerance));
@@ -192,7 +192,7 @@ impl ContactModel {
             momentum_residual: Some(result.momentum_residual),
             steps: Some(result.steps),
             integration_error: result.error_estimate,
-            truncation_error: Some(left_out),
+            truncation_error: Some(omitted),
             bender: system.drive.map(|drive| BenderSummary {
                 strain_energy_efficiency: transmitted.map(|energy| energy / drive.strain_energy),
                 drive,
@@ -226,6 +226,22 @@ impl ContactModel {
         });
         History { time: all.time.clone(), curves: curves.collect() }
     }
+}
+
+/// Relative difference of the force peak of `scene`, with elastic bodies, from Hertz's closed form; `None` for a bender or stack, which
+/// have modes of their own.
+///
+/// # Errors
+/// [`Error::Scene`] for another kind of scene, and as [`integrate`].
+pub fn difference_from_hertz(scene: &Scene) -> Result<Option<f64>> {
+    let model = ContactModel::new(scene)?;
+    if model.setup.outer.shape.is_mounted() {
+        return Ok(None);
+    }
+    let hit = model.system.hertz_impact();
+    let options = Options { end_time: Some(2.0 * hit.duration()), ..Options::default() };
+    let run = integrate(&model.system, None, &options)?;
+    Ok(Some((run.contacts[0].force_peak / hit.force_peak() - 1.0).abs()))
 }
 
 impl SeriesModel for ContactModel {
