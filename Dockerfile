@@ -19,10 +19,11 @@ RUN apt-get update \
         calculix-ccx gcc libc6-dev libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1 \
     && rm -rf /var/lib/apt/lists/*
 COPY --from=build /source/target/release/impactcheck /usr/local/bin/
-COPY --from=build /source/pyproject.toml /tmp/
+WORKDIR /setup
+COPY --from=build /source/pyproject.toml .
 # what the extra [reference] lists
-RUN python3 -c 'import tomllib; print(*tomllib.load(open("/tmp/pyproject.toml", "rb"))["project"]["optional-dependencies"]["reference"], sep="\n")' > /tmp/reference.txt \
-    && pip install --no-cache-dir --requirement /tmp/reference.txt
+RUN python3 -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["reference"], sep="\n")' > reference.txt \
+    && pip install --no-cache-dir --requirement reference.txt
 COPY python/impactcheck /usr/local/lib/python3.12/site-packages/impactcheck
 COPY --from=build /source/target/release/lib_core.so /usr/local/lib/python3.12/site-packages/impactcheck/_core.abi3.so
 COPY scenes /usr/local/share/impactcheck/scenes

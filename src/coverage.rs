@@ -1,4 +1,4 @@
-//! Which features of scenes have a partner: what of the reduced models is held against an independent solution, and how
+//! Which features of scenes have a comparator: what of the reduced models is held against an independent solution, and how
 //! far the two lie apart.
 //!
 //! Nothing is written by hand but the list of features, each a question to a scene. Everything else is found: scenes, models
@@ -12,7 +12,7 @@ use crate::validated::Validation;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Name of a partner that is a formula.
+/// Name of a comparator that is a formula.
 pub const CLOSED_FORM: &str = "closed form";
 
 /// The features of the first kind, those of any scene, those of other kinds.
@@ -48,11 +48,11 @@ impl<'a> Case<'a> {
 /// A model beside an independent solution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// Name of the partner.
+    /// Name of the comparator.
     partner: String,
     /// The closed form, if it is one; then it is about some features only.
     form: Option<Form>,
-    /// Largest relative discrepancy, half width of the partner's band, and the quantity.
+    /// Largest relative discrepancy, half width of the comparator's band, and the quantity.
     largest: Option<(f64, Option<f64>, String)>,
 }
 
@@ -109,7 +109,7 @@ pub struct Coverage {
 pub struct FeatureCoverage {
     /// The feature.
     pub feature: &'static str,
-    /// One entry per model that takes a scene with it and partner; empty if no scene has it or no model takes it.
+    /// One entry per model that takes a scene with it and comparator; empty if no scene has it or no model takes it.
     pub partners: Vec<FeatureComparison>,
 }
 
@@ -125,7 +125,7 @@ pub struct FeatureComparison {
     pub scenes: Vec<String>,
     /// Largest relative discrepancy of any quantity in them.
     pub worst_relative: Option<f64>,
-    /// Half width of the partner's 95 % band of that quantity, relative.
+    /// Half width of the comparator's 95 % band of that quantity, relative.
     pub band: Option<f64>,
     /// That quantity.
     pub quantity: Option<String>,
@@ -142,24 +142,24 @@ pub fn coverage(cases: &[Case]) -> Coverage {
     let features = features().map(|feature| {
         let mut partners: BTreeMap<(Model, Option<&str>), FeatureComparison> = BTreeMap::new();
         for case in cases.iter().filter(|case| is_shown_by(feature, case)) {
-            let partner = case.finding.as_ref().map(|finding| &*finding.partner);
-            let new = || FeatureComparison::of(case.model, partner);
-            partners.entry((case.model, partner)).or_insert_with(new).add(case);
+            let comparator = case.finding.as_ref().map(|finding| &*finding.partner);
+            let new = || FeatureComparison::of(case.model, comparator);
+            partners.entry((case.model, comparator)).or_insert_with(new).add(case);
         }
-        // a scene without a partner says nothing new of a model that has one elsewhere
-        let whole = |key: &&(Model, Option<&str>)| key.1.is_some_and(|partner| partner != CLOSED_FORM);
+        // a scene without a comparator says nothing new of a model that has one elsewhere
+        let whole = |key: &&(Model, Option<&str>)| key.1.is_some_and(|comparator| comparator != CLOSED_FORM);
         let compared: Vec<Model> = partners.keys().filter(whole).map(|key| key.0).collect();
-        partners.retain(|(model, partner), _| partner.is_some() || !compared.contains(model));
+        partners.retain(|(model, comparator), _| comparator.is_some() || !compared.contains(model));
         FeatureCoverage { feature: feature.name, partners: partners.into_values().collect() }
     });
     Coverage { schema_version: SCHEMA_VERSION, features: features.collect() }
 }
 
 impl FeatureComparison {
-    fn of(model: Model, partner: Option<&str>) -> Self {
+    fn of(model: Model, comparator: Option<&str>) -> Self {
         FeatureComparison {
             model: model.to_string(),
-            partner: partner.map(str::to_owned),
+            partner: comparator.map(str::to_owned),
             scenes: Vec::new(),
             worst_relative: None,
             band: None,

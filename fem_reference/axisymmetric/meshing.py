@@ -91,7 +91,7 @@ def _moved_radius(settings: MeshSettings, radii: Floats, r: Floats) -> Floats:
 
 
 def _rim(settings: MeshSettings) -> list[Segment]:
-    """Elements that shrink towards the rim, from the plate's largest on; none if not asked for."""
+    """Elements that shrink towards the rim, from the plate's largest on; none if not requested."""
     first, last, ratio = settings.rim_element, settings.plate_element, settings.growth**2
     if first is None or last < 1.5 * first:
         return []

@@ -37,7 +37,7 @@ class MeshSettings:
     rim_element: float | None = None
     """Element length at the plate's rim, m; None: the rim is not refined."""
     factor: float = 1.0
-    """On the number of elements asked for."""
+    """On the number of elements requested."""
     sphere_elements: tuple[int | None, int | None] = (None, None)
     """Elements of the zone that outer and inner sphere share with the plate; None: all."""
     sphere_refinement: tuple[float, float] = (1.0, 1.0)

@@ -1,4 +1,4 @@
-"""What every solution is asked for: resolution, instants of fields, target error."""
+"""What every solution is made with: resolution, instants of fields, target error."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class Plan:
     most_levels: int = MOST_LEVELS
     """Of sub-cycling; 1: every element at every step."""
     levels_within_samples: bool = True
-    """Whether levels that would make the samples longer than asked for are omitted."""
+    """Whether levels that would make the samples longer than requested are omitted."""
     chunk: int | None = None
     """Samples between two looks at energy, end and clock."""
 

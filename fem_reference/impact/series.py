@@ -90,7 +90,7 @@ class MeshResult:
     """What a run on one mesh leaves for the bands."""
 
     factor: float
-    """On the number of elements asked for."""
+    """On the number of elements requested."""
     values: dict[str, float]
     times: Floats
     rows: Floats
@@ -125,12 +125,12 @@ def solve_series(
 ) -> None:
     """Solve on `MESHES` meshes and write the result folder ``target``.
 
-    The finest has ``factor`` times the elements asked for in every direction, or as many more as
+    The finest has ``factor`` times the elements requested in every direction, or as many more as
     `Options.target_error` needs. A series that was killed goes on from its files. ``write`` is
     called in the first process only.
 
     Raises:
-        SceneError: an option is out of bounds, or a band is asked for of what the run leaves open.
+        SceneError: an option is out of bounds, or a band is requested of what the run leaves open.
         RunError: a mesh could not be solved, or the result not be written.
     """
     progress = progress if progress is not None else Progress()
@@ -156,7 +156,7 @@ def solve_series(
 
 
 class Series(Generic[S]):
-    """Meshes numbered from the one asked for (0); finer ones have negative numbers.
+    """Meshes numbered from the one requested (0); finer ones have negative numbers.
 
     Args:
         solver: see there.
@@ -191,7 +191,7 @@ class Series(Generic[S]):
             if solution.run.in_contact_at_end:
                 raise SceneError(
                     "the run ends at run.end_time during a contact, which leaves open what the "
-                    f"band of {aim:g} is asked for; set a later end, or none"
+                    f"band of {aim:g} is requested; set a later end, or none"
                 )
             reached = relative_error(meshes, self.solver.targeted)
             if reached <= aim:
@@ -203,7 +203,7 @@ class Series(Generic[S]):
             if self._factor(finest) > MOST_REFINED[self.solver.dimension] * self.factor:
                 raise SolverError(
                     f"the largest relative band is {reached:.3g} at {meshes[0].factor:.3g} times "
-                    f"the elements asked for; {aim:g} is asked for"
+                    f"the elements requested; {aim:g} is requested"
                 )
 
     def _meshes(self, finest: int) -> tuple[S, list[MeshResult]]:

@@ -75,7 +75,7 @@ class Solution:
     estimate: ContactEstimate
     meshes_tried: int
     factor: float
-    """On the number of elements asked for."""
+    """On the number of elements requested."""
     radii: tuple[float, float]
     """Contact radii the mesh is made for, outer and inner, m."""
     reach: float
@@ -254,7 +254,7 @@ def compute(
     """Solve a scene with ``factor`` (see `settings.RESOLUTIONS`) times the asked elements.
 
     The mesh is made for estimated contact radii. If the radii found from the peak forces leave
-    fewer than `ACCEPTED_SHARE` of the elements asked for, or contact reached the last pair of
+    fewer than `ACCEPTED_SHARE` of the elements requested, or contact reached the last pair of
     matching nodes, it is made again with the radii found.
 
     Args:

@@ -42,7 +42,7 @@ NAME = "CalculiX"
 REVISION = 1
 """Counts changes of the method that make kept results useless."""
 QUADRATIC = 0.2
-"""Quadratic elements in every direction for one bilinear element asked for."""
+"""Quadratic elements in every direction for one bilinear element requested."""
 STEPS = 150.0
 """Time steps in the shorter Hertz contact duration at `paper` resolution."""
 

@@ -171,11 +171,11 @@ def solver(scene: Scene, comm: Any, options: Options) -> ImpactSolver[Any]:
     """How the scene is solved, by its geometry.
 
     Raises:
-        SceneError: fields are asked for of what yields, or CalculiX does not cover the scene.
+        SceneError: fields are requested of what yields, or CalculiX does not cover the scene.
     """
     if scene.yields and (options.stress_times or options.frame_times):
         raise SceneError(
-            "fields are asked for, but a material yields: the stress they show is the elastic one"
+            "fields are requested, but a material yields: the stress they show is the elastic one"
         )
     compute: Callable[[float, Settings, Report, Any], Any]
     leads: Callable[[Any], list[Any]] | None = None

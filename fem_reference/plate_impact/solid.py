@@ -142,7 +142,7 @@ def rounded(radius: float) -> float:
 
 
 def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: Report) -> Solution:
-    """Solve a scene with ``factor`` times the elements asked for, in every direction.
+    """Solve a scene with ``factor`` times the elements requested, in every direction.
 
     The mesh is made for estimated contact radii, and again if those found in the run leave less
     than `ACCEPTED_SHARE` of the elements, or contact left the zone of candidates.
@@ -203,5 +203,5 @@ def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: 
         )
     raise SolverError(
         f"after {MOST_MESHES} meshes there are still only {min(found):.3g} elements per contact "
-        f"radius, {requested:.3g} are asked for"
+        f"radius, {requested:.3g} are requested"
     )

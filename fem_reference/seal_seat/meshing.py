@@ -89,7 +89,7 @@ class SeatSize:
 
 
 def seat_size(scene: SeatScene, factor: float) -> SeatSize:
-    """Element sizes for ``factor`` times the elements asked for, in every direction."""
+    """Element sizes for ``factor`` times the elements requested, in every direction."""
     seat, ring = scene.seat, scene.ring()
     at_ring = ring.radius / scene.elements_per_ring_radius / factor
     # Linear tetrahedra are too stiff in bending: more of them through the thickness.
@@ -247,7 +247,7 @@ def corner_mesh(scene: SeatScene, factor: float) -> tuple[Floats, Ints]:
 
 
 def seat_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
-    """The half seat with ``factor`` times the elements asked for, in every direction.
+    """The half seat with ``factor`` times the elements requested, in every direction.
 
     Raises:
         SolverError: gmsh failed, an element is inverted or degenerate, or the ring is no edge.

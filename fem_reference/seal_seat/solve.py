@@ -68,7 +68,7 @@ def method(scene: SeatScene) -> list[Any]:
 def compute(
     scene: SeatScene, factor: float, settings: Settings, comm: Any, report: Report
 ) -> Solution:
-    """Solve a scene with ``factor`` times the elements asked for, in every direction.
+    """Solve a scene with ``factor`` times the elements requested, in every direction.
 
     Raises:
         SceneError: the scene is outside the method.

@@ -50,7 +50,7 @@ class Solution:
 def compute(
     scene: SpringScene, factor: float, settings: Settings, report: Report, lead: Any
 ) -> Solution:
-    """Central differences with 600 steps in the contact on the mesh asked for."""
+    """Central differences with 600 steps in the contact on the mesh requested."""
     period = math.sqrt(scene.mass / scene.stiffness)
     end = scene.end_time or 1.2 * math.pi * period
     step = end / round(end / (math.pi * period) * 600 * factor)

@@ -40,7 +40,7 @@ class Alone:
 
 
 class Convergent:
-    """A method of known order; keeps the factors it was asked for."""
+    """A method of known order; keeps the factors that were requested."""
 
     def __init__(
         self, order: float, leads: bool = False, revision: int = 1, cut: bool = False
@@ -181,7 +181,7 @@ def test_where_the_finest_mesh_leads_it_comes_first(
 def test_a_target_out_of_reach_is_an_error_and_leaves_no_result(
     solve: Callable[..., Convergent], tmp_path: Path
 ) -> None:
-    with pytest.raises(SolverError, match="1e-05 is asked for"):
+    with pytest.raises(SolverError, match="1e-05 is requested"):
         solve(target_error=1e-5)
     assert not (tmp_path / "out").exists()
     with pytest.raises(SceneError, match="--target-error is 2"):

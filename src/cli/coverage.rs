@@ -90,7 +90,7 @@ fn compared_with_programs(scene: &Scene, programs: &[Outcome], model: Model) -> 
     sound.flat_map(|program| Validation::of(scene, &compare_scene(scene, program, &own))).collect()
 }
 
-/// `model` against a stored reference; `None` if it does not take the scene, which is told.
+/// `model` against a stored reference; `None` if it does not take the scene, which is reported.
 fn compared(context: &Context, scene: &Scene, stored: &Stored, model: Model) -> Option<Validation> {
     match kinds::of(scene).with_reference(context, scene, stored, (&[RequestedModel::Named(model)], None)) {
         Ok((reduced, _)) => Validation::of(scene, &compare_scene(scene, &stored.outcome, &reduced)).pop(),
@@ -137,9 +137,9 @@ fn table(found: &Coverage, named: bool) -> String {
                 let band = row.band.map_or("unknown".to_owned(), percent);
                 format!("{} ({band}), {quantity}", percent(relative))
             });
-            let partner = row.partner.as_deref().unwrap_or("nothing");
+            let comparator = row.partner.as_deref().unwrap_or("nothing");
             let scenes = row.scenes.len();
-            let line = format!("{name:<28} {:<6} {partner:<14} {scenes:>6}  {difference}", row.model);
+            let line = format!("{name:<28} {:<6} {comparator:<14} {scenes:>6}  {difference}", row.model);
             lines.push(line.trim_end().to_owned());
             name = "";
         }

@@ -81,7 +81,7 @@ pub struct MeasuredComparison {
     /// Area between the distributions of its efficiency, inputs being as uncertain as that, and of the measured ones.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<Area>,
-    /// Curve metrics, the measurement as reference, the partner filtered.
+    /// Curve metrics, the measurement as reference, the comparator filtered.
     pub curves: Vec<CurveMetrics>,
     /// Its filtered curves on the window.
     #[serde(skip)]
@@ -125,8 +125,8 @@ pub fn compare(
     let models = reduced.iter().filter(shows);
     let outcomes = std::iter::once(("reference", reference))
         .chain(models.map(|outcome| (outcome.summary.model.as_deref().unwrap_or_default(), outcome)));
-    let partners = outcomes
-        .map(|(partner, outcome)| {
+    let comparators = outcomes
+        .map(|(comparator, outcome)| {
             let filtered = Filtered::new(&outcome.history, bandwidth)?;
             let filtered: Vec<SampledCurve> = SIGNALS
                 .into_iter()
@@ -137,9 +137,9 @@ pub fn compare(
                 })
                 .collect();
             let (validation, area) =
-                efficiency.assessed(&outcome.summary, propagated_of(propagations, partner));
+                efficiency.assessed(&outcome.summary, propagated_of(propagations, comparator));
             Ok(MeasuredComparison {
-                partner: partner.to_owned(),
+                partner: comparator.to_owned(),
                 efficiency: outcome.summary.value("efficiency"),
                 efficiency_difference: efficiency.difference(&outcome.summary),
                 validation,
@@ -150,7 +150,7 @@ pub fn compare(
         })
         .collect::<Result<Vec<_>>>()?;
     let efficiency = efficiency.series;
-    Ok(Measured { rule: RULE, bandwidth, speed, efficiency, partners, window, curves, records })
+    Ok(Measured { rule: RULE, bandwidth, speed, efficiency, partners: comparators, window, curves, records })
 }
 
 /// What the records show of the efficiency.
@@ -216,13 +216,13 @@ fn metrics(
 ) -> Vec<CurveMetrics> {
     let pair = |curve: &SampledCurve| {
         let known = known.iter().find(|known| known.name == curve.quantity)?;
-        let partner = filtered.iter().find(|other| other.quantity == curve.quantity)?;
+        let comparator = filtered.iter().find(|other| other.quantity == curve.quantity)?;
         let aligned = AlignedCurve {
             quantity: known.name,
             unit: known.unit,
             axis,
             reference: curve.values.clone(),
-            reduced: partner.values.clone(),
+            reduced: comparator.values.clone(),
         };
         Some(CurveMetrics::of(&aligned))
     };

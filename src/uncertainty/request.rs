@@ -10,7 +10,7 @@ pub const DEFAULT_QUANTITIES: [&str; 3] = ["efficiency", "outer_force_peak", "in
 pub enum Samples {
     /// So many rows.
     Rows(usize),
-    /// Twice as many again and again, until the 95 % intervals of mean and standard deviation of the requested quantities are no wider than
+    /// Doubled until the 95 % intervals of mean and standard deviation of the requested quantities are no wider than
     /// this share of the standard deviation to either side.
     Until(f64),
 }

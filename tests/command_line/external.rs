@@ -152,7 +152,7 @@ fn a_program_that_fails_is_reported_and_stops_nothing() {
         let model = judged.model(name);
         let failure = model["summary"]["failure"].as_str().unwrap_or_else(|| panic!("{name} has not failed"));
         assert!(failure.contains(part), "{name}: {failure}");
-        assert!(judged.messages.contains(failure), "{name} is told of on standard error");
+        assert!(judged.messages.contains(failure), "{name} is reported on standard error");
         assert_eq!((&model["verdict"], &model["summary"]["efficiency"]), (&"fail".into(), &Value::Null));
     }
     for (name, _, check) in lying {

@@ -1,4 +1,4 @@
-//! The reduced seal seat beside a reference: verdicts, bands, report.
+//! The reduced seal seat compared with a reference: verdicts, bands, report.
 
 use super::reduced::{fixture, model, sixteen};
 use impactcheck::comparison::{ComparisonInput, GateRules, Verdict, compare_scene};

@@ -21,10 +21,10 @@ use crate::numerics::stages::{STAGES, Stages};
 use std::sync::LazyLock;
 use wide::f64x4;
 
-/// Contacts beyond which that is the impact's nature: a light plate that rattles between heavy bodies which close in on it.
-const RATTLING: u32 = 1000;
-/// Turn of the quickest vibration per step, rad, from which on the steps are no shorter than it needs: then a foil that trembles on a
-/// stiff contact, quicker than any of its modes, does so for too long.
+/// Contacts beyond which the impact itself does not end: contact chatter of a light plate between heavy bodies that approach each other.
+const CHATTER: u32 = 1000;
+/// Turn of the quickest vibration per step, rad, from which on the steps are no shorter than it needs: then a foil vibrates too long on a
+/// stiff contact, quicker than any of its modes.
 const TURN_PER_STEP: f64 = 0.1;
 /// Share of a force's admissible defect at which the sweeps may end.
 const CONVERGED: f64 = 0.1;
@@ -375,7 +375,7 @@ impl Stepper for DryStepper<'_> {
             Self::MOST_STEPS,
             self.time
         );
-        if contacts > RATTLING || turned > TURN_PER_STEP * self.steps as f64 {
+        if contacts > CHATTER || turned > TURN_PER_STEP * self.steps as f64 {
             Error::BeyondModel(sentence)
         } else {
             Error::Solver(sentence)

@@ -125,7 +125,7 @@ impl Impacts<'_> {
     /// there is no such speed.
     ///
     /// On a rigid wall the peak of Hertz's force grows with the speed to the 6/5 (Johnson 1985, section 11.4), on a plate nearly so:
-    /// that power, again and again.
+    /// that power, repeatedly.
     pub(super) fn elastic_speeds(&self, onset: &OnsetOfYield, options: &Options) -> [Option<f64>; 2] {
         [0, 1].map(|i| {
             let mut speed = self.system.speed;

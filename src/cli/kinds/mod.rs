@@ -63,7 +63,7 @@ pub(super) trait ReducedModels: Sync {
         own.map(|model| kind.model(scene, *model, None)?.run_with_history(DEFAULT_TOLERANCE)).collect()
     }
 
-    /// Runs those of the models `request` for that there are, with the tolerance of `auto`, beside a reference.
+    /// Runs those of the models `request` for that there are, with the tolerance of `auto`, compared with a reference.
     ///
     /// # Errors
     /// Those of the models.

@@ -99,7 +99,7 @@ impl ReducedModels for Plates {
     }
 }
 
-/// Those of `models` that have a form for `scene`; `omitted` is told why of the others. All if none has, which tells why, too.
+/// Those of `models` that have a form for `scene`; `omitted` gets the reasons of the others. All if none has: running them gives the reason.
 fn having(scene: &Scene, models: &[RequestedModel], omitted: impl Fn(&Error)) -> Vec<RequestedModel> {
     let refused = |request: &RequestedModel| match request {
         RequestedModel::Named(model) => Reduced::require(scene, *model).err(),

@@ -249,8 +249,8 @@ fn a_plate_that_comes_back_to_the_inner_body_is_refused() {
     assert_eq!((report.failures, report.beyond_model), (vec![], vec![14_000_069_294]));
 }
 
-/// The light plate leaves the inner body, 956 times as heavy as the outer one, so slowly that the time of release was off by 3.02e-4. An
-/// inner body of 0.0035 of the outer one vibrates on its contact, which moves its release by 4.6e-4 with the forces known to 1e-10.
+/// The light plate leaves the inner body, 956 times as heavy as the outer one, so slowly that the time of separation differed by
+/// 3.02e-4. An inner body of 0.0035 of the outer one vibrates on its contact: its separation differed by 4.6e-4, with forces known to 1e-10.
 #[test]
 fn an_uncertain_release_is_solved_again() {
     for seed in [38_000_000_145, 43_000_001_781] {

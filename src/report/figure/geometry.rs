@@ -85,6 +85,7 @@ impl FigureGeometry {
 }
 
 /// A panel: curves of one quantity over time.
+#[derive(Clone, Copy)]
 pub(crate) struct PanelOf {
     /// Quantity and unit, beside the axis.
     pub(crate) label: &'static str,

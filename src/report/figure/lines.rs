@@ -80,23 +80,23 @@ pub(crate) fn measured_lines(measured: &Measured) -> Vec<Line> {
         curves: measured.curves.clone(),
         bands: Vec::new(),
     };
-    let partners = measured.partners.iter().map(|partner| {
-        let reference = partner.partner == "reference";
-        let names = measured.partners.iter().map(|partner| &*partner.partner);
-        let look = look(&partner.partner, names.filter(|name| *name != "reference"));
-        let name = if reference { "FE reference".into() } else { format!("model {}", partner.partner) };
+    let comparators = measured.partners.iter().map(|comparator| {
+        let reference = comparator.partner == "reference";
+        let names = measured.partners.iter().map(|comparator| &*comparator.partner);
+        let look = look(&comparator.partner, names.filter(|name| *name != "reference"));
+        let name = if reference { "FE reference".into() } else { format!("model {}", comparator.partner) };
         Line {
             name,
-            short: if reference { "FE".into() } else { partner.partner.clone() },
+            short: if reference { "FE".into() } else { comparator.partner.clone() },
             class: if reference { "fig-reference" } else { look.class }.into(),
             dash: if reference { "none" } else { look.dash },
             width: if reference { 2.1 } else { 1.7 },
-            efficiency: partner.efficiency.unwrap_or(f64::NAN),
-            curves: partner.filtered.clone(),
+            efficiency: comparator.efficiency.unwrap_or(f64::NAN),
+            curves: comparator.filtered.clone(),
             bands: Vec::new(),
         }
     });
-    std::iter::once(record).chain(partners).collect()
+    std::iter::once(record).chain(comparators).collect()
 }
 
 /// The curve `data` in the style of its line.

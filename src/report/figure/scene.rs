@@ -20,8 +20,8 @@ const LEGEND_ROW: f64 = 20.0;
 /// Widths in mm a figure of its own can have.
 pub const FIGURE_WIDTHS: std::ops::RangeInclusive<f64> = 75.0..=300.0;
 
-/// What can be measured: the bodies, by their motion.
-const MEASURED: [PanelOf; 2] = [
+/// Motion of both bodies: what can be measured.
+pub(crate) const MOTION: [PanelOf; 2] = [
     PanelOf {
         label: "Displacement in µm",
         factor: 1e6,
@@ -67,7 +67,7 @@ pub fn measured_figure(report: &SceneReport, theme: Theme) -> Option<String> {
     let measured = report.comparison.measured.as_ref()?;
     let title = format!("{}: measurement, reduced models and finite-element reference", report.scene.name);
     let lines = measured_lines(measured);
-    Some(drawing(&title, &FigureGeometry::PAGE, &MEASURED, &lines, Some(measured.window), theme))
+    Some(drawing(&title, &FigureGeometry::PAGE, &MOTION, &lines, Some(measured.window), theme))
 }
 
 fn drawing(

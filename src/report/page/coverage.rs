@@ -15,7 +15,7 @@ pub(crate) const FILE: &str = "coverage.html";
 /// Difference that is told as such: nobody needs its digits.
 const NEGLIGIBLE: f64 = 1e-6;
 const MODELS: [&str; 3] = ["A", "B", "C"];
-/// The partners that have a column of their own; all others are other programs.
+/// The comparators that have a column of their own; all others are other programs.
 const COMPARATORS: [&str; 3] = ["axisymmetric", "solid", CLOSED_FORM];
 
 /// The page of `coverage`; scenes with a page among those `existing` are linked.
@@ -36,7 +36,7 @@ pub(crate) fn of(coverage: &Coverage, existing: &[ExistingScene]) -> String {
     page("Coverage", &[], &body, &html! {})
 }
 
-/// How many features have a partner, and which have none.
+/// How many features have a comparator, and which have none.
 fn description(coverage: &Coverage) -> String {
     let is_compared = |feature: &&FeatureCoverage| feature.partners.iter().any(|p| p.partner.is_some());
     let (compared, alone): (Vec<_>, Vec<_>) = coverage.features.iter().partition(is_compared);
@@ -67,19 +67,19 @@ fn table(coverage: &Coverage, pages: &[&str]) -> Markup {
             @if feature.partners.is_empty() { td.left.soft colspan="7" { "no scene has it" } }
             @else {
                 @for model in MODELS { td.left { (of_model(feature, model)) } }
-                @for partner in COMPARATORS { td.left { (of_comparator(&with(feature, |name| name == partner), pages)) } }
+                @for comparator in COMPARATORS { td.left { (of_comparator(&with(feature, |name| name == comparator), pages)) } }
                 td.left { (of_comparator(&with(feature, |name| !COMPARATORS.contains(&name)), pages)) }
             }
         } } }
     } }
 }
 
-/// The entries of a feature whose partner's name `is_selected`.
+/// The entries of a feature whose comparator's name `is_selected`.
 fn with(feature: &FeatureCoverage, is_selected: impl Fn(&str) -> bool) -> Vec<&FeatureComparison> {
     feature.partners.iter().filter(|p| p.partner.as_deref().is_some_and(&is_selected)).collect()
 }
 
-/// The largest difference of a model to any partner that solves whole scenes.
+/// The largest difference of a model to any comparator that solves whole scenes.
 fn of_model(feature: &FeatureCoverage, model: &str) -> Markup {
     let own: Vec<&FeatureComparison> = feature.partners.iter().filter(|p| p.model == model).collect();
     let whole = own.iter().filter(|p| p.partner.is_some() && p.partner.as_deref() != Some(CLOSED_FORM));
@@ -94,9 +94,9 @@ fn of_model(feature: &FeatureCoverage, model: &str) -> Markup {
     }
 }
 
-/// The scenes of `entries`, all with one partner, and the difference of the model that comes nearest to it.
+/// The scenes of `entries`, all with one comparator, and the difference of the model that comes nearest to it.
 fn of_comparator(entries: &[&FeatureComparison], pages: &[&str]) -> Markup {
-    let size = |partner: &&&FeatureComparison| partner.worst_relative.unwrap_or(f64::INFINITY);
+    let size = |comparator: &&&FeatureComparison| comparator.worst_relative.unwrap_or(f64::INFINITY);
     let Some(nearest) = entries.iter().min_by(|a, b| size(a).total_cmp(&size(b))) else {
         return html! { span.soft { "–" } };
     };
@@ -114,7 +114,7 @@ fn of_comparator(entries: &[&FeatureComparison], pages: &[&str]) -> Markup {
     }
 }
 
-/// The largest difference of an entry, with the partner's band and the quantity.
+/// The largest difference of an entry, with the comparator's band and the quantity.
 fn difference(entry: &FeatureComparison) -> Markup {
     let Some(relative) = entry.worst_relative else { return html! { "–" } };
     let quantity = entry.quantity.as_deref().map(words).unwrap_or_default();
@@ -135,18 +135,18 @@ fn size(relative: f64) -> String {
 mod tests {
     use super::*;
 
-    fn entry(model: &str, partner: Option<&str>, worst: f64) -> FeatureComparison {
+    fn entry(model: &str, comparator: Option<&str>, worst: f64) -> FeatureComparison {
         FeatureComparison {
             model: model.into(),
-            partner: partner.map(str::to_owned),
+            partner: comparator.map(str::to_owned),
             scenes: vec!["here".into(), "elsewhere".into()],
-            worst_relative: partner.map(|_| worst),
-            band: partner.map(|_| 0.002),
-            quantity: partner.map(|_| "inner_force_peak".into()),
+            worst_relative: comparator.map(|_| worst),
+            band: comparator.map(|_| 0.002),
+            quantity: comparator.map(|_| "inner_force_peak".into()),
         }
     }
 
-    /// Every cell says what there is, a feature without partner that it has none.
+    /// Every cell says what there is, a feature without comparator that it has none.
     #[test]
     fn cells_have_the_largest_difference_of_a_model_and_the_nearest_model_of_a_comparator() {
         let compared = FeatureCoverage {

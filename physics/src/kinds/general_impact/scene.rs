@@ -87,7 +87,7 @@ impl GeneralImpact {
         self.inner().map(|inner| inner.shape.mass(&inner.material))
     }
 
-    /// Whether results have the quantity or curve called `name`: a wall does not move, a held body has an energy of its own, and the tip of a
+    /// Whether results have the quantity or curve called `name`: a wall does not move, a clamped body has an energy of its own, and the tip of a
     /// stack vibrates on.
     pub fn has(&self, name: &str) -> bool {
         let outer = &self.outer.shape;
@@ -122,7 +122,7 @@ impl Scene {
 
 static WALL: [Field; 2] = [
     optional("material", Kind::Material, "Material of the half-space, a name under [materials]"),
-    optional("rigid", Kind::Flag, "`true` instead of a material: the wall does not yield"),
+    optional("rigid", Kind::Flag, "`true` instead of a material: the wall does not deform"),
 ];
 
 static REDUCED: [Field; 1] =

@@ -8,7 +8,7 @@ use crate::scene::values::{Checked, Node};
 
 /// Sizes of what was measured with these methods, in m.
 const LENGTH: [f64; 2] = [1e-6, 1.0];
-/// Outer bodies that are held at one end.
+/// Outer bodies that are clamped at one end.
 const MOUNTED: [&str; 2] = ["bender", "stack"];
 
 /// Tables and keys of a scene that exclude or need each other.
@@ -43,7 +43,7 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
         Rule {
             fields: vec!["wall.rigid"],
             holds: !(has_material && is_rigid),
-            message: "`wall.material` and `wall.rigid` exclude each other: a rigid wall does not yield"
+            message: "`wall.material` and `wall.rigid` exclude each other: a rigid wall does not deform"
                 .into(),
             help: "remove one of them",
         },
@@ -56,9 +56,8 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
         Rule {
             fields: vec!["outer.kind"],
             holds: !is_mounted || wall.is_none() || ends,
-            message:
-                "`run.end_time` is missing: a bender or stack is held and strikes a wall again and again"
-                    .into(),
+            message: "`run.end_time` is missing: a bender or stack is clamped and strikes a wall repeatedly"
+                .into(),
             help: "add [run] with `end_time`, the time in which its strikes count",
         },
         Rule {

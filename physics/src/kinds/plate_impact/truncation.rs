@@ -37,7 +37,7 @@ const NEAR: f64 = 0.9;
 pub(super) struct Truncation {
     /// Largest estimated relative error of the quantities covered ([`super::errors::COVERED`]).
     pub(super) error: f64,
-    /// What the user has to be told of it.
+    /// What the user has to know of it.
     pub(super) warning: Option<String>,
 }
 

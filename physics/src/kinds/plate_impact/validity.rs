@@ -20,7 +20,7 @@ use crate::scene::Model;
 const MEASURED: [(f64, f64); 2] = [(0.46, 0.0022), (1.05, 0.01)];
 /// Share of the film's loss that is too much: the film of the models knows no dents of plate and inner body.
 const FILM_EXCESS: f64 = 0.25;
-/// Error of the efficiency by it that is told.
+/// Error of the efficiency by it that is reported.
 const FILM_ERROR: f64 = 0.01;
 /// Share of the patch that the contacts have to be able to exceed before they become punches.
 const REACH: f64 = 1.2;

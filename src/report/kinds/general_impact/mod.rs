@@ -5,6 +5,7 @@ mod picture;
 use super::Presentation;
 use crate::report::SceneReport;
 use crate::report::figure::geometry::PanelOf;
+use crate::report::figure::scene::MOTION;
 use crate::report::page::section::{self, Section};
 use crate::report::summary_column::SummaryColumn;
 use crate::scene::Scene;
@@ -26,18 +27,8 @@ impl Presentation for Direct {
 
     fn panels(&self) -> &'static [PanelOf] {
         const PANELS: [PanelOf; 3] = [
-            PanelOf {
-                label: "Displacement in µm",
-                factor: 1e6,
-                curves: &[("outer", "outer_displacement"), ("inner", "inner_displacement")],
-                boxes: false,
-            },
-            PanelOf {
-                label: "Velocity in mm/s",
-                factor: 1e3,
-                curves: &[("outer", "outer_velocity"), ("inner", "inner_velocity")],
-                boxes: false,
-            },
+            MOTION[0],
+            PanelOf { boxes: false, ..MOTION[1] },
             PanelOf {
                 label: "Contact force in N",
                 factor: 1.0,

@@ -23,9 +23,15 @@ pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
     let points =
         impacts.filter_map(|(k, record)| Some((k as f64 + 1.0, 100.0 * record.efficiency?))).collect();
     let last = measured.records.len() as f64;
-    let level = |partner: &MeasuredComparison| Series {
-        name: if partner.partner == "reference" { "FE".into() } else { format!("model {}", partner.partner) },
-        points: partner.efficiency.map_or_else(Vec::new, |own| vec![(1.0, 100.0 * own), (last, 100.0 * own)]),
+    let level = |comparator: &MeasuredComparison| Series {
+        name: if comparator.partner == "reference" {
+            "FE".into()
+        } else {
+            format!("model {}", comparator.partner)
+        },
+        points: comparator
+            .efficiency
+            .map_or_else(Vec::new, |own| vec![(1.0, 100.0 * own), (last, 100.0 * own)]),
         ..Series::default()
     };
     let series = measured.partners.iter().map(level).chain([Series {
@@ -93,16 +99,17 @@ fn alignment(measured: &Measured) -> Rows {
 }
 
 fn metrics(measured: &Measured) -> Rows {
-    let heading =
-        ["partner", "efficiency", "less measured", "curve", "Sprague-Geers", "Russell", "ISO/TS 18571"];
+    let heading = ["result", "efficiency", "difference", "curve", "Sprague-Geers", "Russell", "ISO/TS 18571"];
     let score = |value: Option<f64>| value.map_or("–".into(), |v| significant(v, 3));
     let mut rows: Rows = vec![heading.map(str::to_owned).into()];
-    for partner in &measured.partners {
-        for curve in &partner.curves {
+    for comparator in &measured.partners {
+        for curve in &comparator.curves {
             rows.push(vec![
-                partner.partner.clone(),
-                partner.efficiency.map_or("–".into(), |own| format!("{} %", significant(100.0 * own, 4))),
-                partner
+                comparator.partner.clone(),
+                comparator
+                    .efficiency
+                    .map_or("–".into(), |own| format!("{} %", significant(100.0 * own, 4))),
+                comparator
                     .efficiency_difference
                     .map_or("–".into(), |d| format!("{} points", significant(100.0 * d, 3))),
                 words(&curve.quantity),
@@ -115,23 +122,23 @@ fn metrics(measured: &Measured) -> Rows {
     rows
 }
 
-/// What the partners' efficiencies show; nothing if the inputs are certain.
+/// What the comparators' efficiencies show; nothing if the inputs are certain.
 fn validation(measured: &Measured) -> Option<Rows> {
-    let heading = ["partner", "E", "u_val", "u_num", "u_input", "u_D", "shows", "area", "above, below"];
+    let heading = ["result", "E", "u_val", "u_num", "u_input", "u_D", "shows", "area", "above, below"];
     let points = |value: f64| format!("{} points", significant(100.0 * value, 3));
-    let row = |partner: &MeasuredComparison| {
-        let of = partner.validation.as_ref()?;
+    let row = |comparator: &MeasuredComparison| {
+        let of = comparator.validation.as_ref()?;
         let known = |u: Option<f64>| u.map_or("–".into(), points);
         Some(vec![
-            partner.partner.clone(),
+            comparator.partner.clone(),
             points(of.error),
             points(of.u_val),
             known(of.parts.u_num),
             points(of.parts.u_input),
             known(of.parts.u_d),
             format!("{}: {}", of.verdict.words(), of.sentence),
-            partner.area.map_or("–".into(), |area| points(area.area)),
-            partner
+            comparator.area.map_or("–".into(), |area| points(area.area)),
+            comparator
                 .area
                 .map_or("–".into(), |area| format!("{}, {}", points(area.above), points(area.below))),
         ])

@@ -102,9 +102,9 @@ pub(crate) fn validation_text(comparison: &SceneComparison) -> String {
             .collect::<String>()
     };
     let measured = comparison.measured.iter().flat_map(|measured| &measured.partners);
-    let of_comparators = measured.filter_map(|partner| {
-        let of = partner.validation.as_ref()?;
-        Some(format!("  {} against the measurement: {}\n", partner.partner, line("efficiency", of)))
+    let of_comparators = measured.filter_map(|comparator| {
+        let of = comparator.validation.as_ref()?;
+        Some(format!("  {} against the measurement: {}\n", comparator.partner, line("efficiency", of)))
     });
     comparison.models.iter().map(of_model).chain(of_comparators).collect()
 }

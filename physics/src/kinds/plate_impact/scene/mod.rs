@@ -1,11 +1,11 @@
 //! The scene: a body that strikes a circular plate with a second body behind it, in a fluid or dry.
 
-mod plate_keys;
-mod plate_reading;
+mod keys;
+mod read;
 mod soundness;
 
-pub use plate_keys::MAX_MODES;
-pub(in crate::kinds) use plate_keys::PLATE;
+pub use keys::MAX_MODES;
+pub(in crate::kinds) use keys::PLATE;
 
 use super::NAME;
 use crate::error::Result;
@@ -80,13 +80,12 @@ impl Scene {
 
 impl Language for super::Kind {
     fn keys(&self) -> Vec<Field> {
-        plate_keys::keys()
+        keys::keys()
     }
 
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)> {
-        let setup = plate_reading::plate_impact(root, materials)?;
-        let reference =
-            plate_reading::reference(root.optional_table("reference")?, setup.outer.is_centred())?;
+        let setup = read::plate_impact(root, materials)?;
+        let reference = read::reference(root.optional_table("reference")?, setup.outer.is_centred())?;
         Ok((setup.into(), reference))
     }
 }

@@ -1,7 +1,7 @@
 //! From the checked values of a plate impact to its types.
 
 use super::PlateImpact;
-use super::plate_keys::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS};
+use super::keys::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS};
 use crate::Result;
 use crate::kinds::body_reading;
 use crate::scene::material::material;
