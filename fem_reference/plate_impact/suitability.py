@@ -151,4 +151,6 @@ class Suitability:
     def __str__(self) -> str:
         """What a message says."""
         beyond = "" if self.reach_left else " and yielding beyond its zone"
-        return f"{self.least:.3g} elements per contact radius, {self.requested:.3g} requested{beyond}"
+        return (
+            f"{self.least:.3g} elements per contact radius, {self.requested:.3g} requested{beyond}"
+        )
