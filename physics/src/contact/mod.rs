@@ -2,12 +2,14 @@
 
 mod dented;
 mod elastic_plastic;
+mod ellipse;
 mod hertz;
 mod patch_flexibility;
 mod residual;
 mod viscoelastic;
 
 pub use dented::DentedContact;
+pub use ellipse::effective_radius;
 pub use hertz::Hertz;
 pub use patch_flexibility::{PatchFlexibility, PatchTable, RADII, TABULATED, Tabulated, WHOLE};
 pub use residual::{Residual, State};

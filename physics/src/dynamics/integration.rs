@@ -4,7 +4,7 @@
 use super::contact_balance::ContactBalance;
 use super::driver::StopReason;
 use super::free_flight;
-use super::system::{PLATE, System};
+use super::system::System;
 use crate::result::{History, Losses};
 
 /// Samples between the ends of steps and flights that a requested history has at most: 9 MB.
@@ -233,10 +233,13 @@ pub(super) fn unexplained_momentum(
         let momentum = system.masses[0] * (velocity[0] + system.speed);
         largest = largest.max((momentum - outer.impulse).abs());
     }
-    if system.oscillators.get(PLATE).is_some_and(|o| o.omega == 0.0) {
-        // rigid motion of a free plate: rate / participation = momentum
-        let plate = v[PLATE] / system.centre[PLATE];
-        largest = largest.max((plate + outer.impulse - inner.impulse + fluid.film_impulse).abs());
+    for k in system.rigid() {
+        // rigid motion of a free plate or body: rate / participation = momentum
+        let moved = [0, 1].map(|i| system.approach[i][k]);
+        let most = moved[0].abs().max(moved[1].abs());
+        let [struck, pushed] = moved.map(|moved| moved / most);
+        let momentum = v[k] / most + struck * outer.impulse + pushed * inner.impulse;
+        largest = largest.max((momentum + fluid.film_impulse).abs());
     }
     largest
 }

@@ -196,10 +196,15 @@ impl System {
         self.elastic().filter(|k| self.approach[0][*k] * self.approach[1][*k] < 0.0).count()
     }
 
+    /// Places of the rigid motions of a free plate or body among the oscillators.
+    pub fn rigid(&self) -> Range<usize> {
+        let rigid = self.oscillators[PLATE..].iter().take_while(|o| o.omega == 0.0).count();
+        PLATE..PLATE + rigid
+    }
+
     /// Places of the plate's elastic modes among the oscillators, the lowest first.
     pub fn elastic(&self) -> Range<usize> {
-        let rigid = self.oscillators.get(PLATE).is_some_and(|first| first.omega == 0.0);
-        let first = PLATE + usize::from(rigid);
+        let first = self.rigid().end;
         first..first + self.modes
     }
 

@@ -120,6 +120,10 @@ pub struct Summary {
     /// efficiency's relative to at least 0.05, the velocity's to the impact speed. `None` if there is no estimate.
     #[serde(default)]
     pub truncation_error: Option<f64>,
+    /// Reduced models of a body from a mesh: the change of efficiency and force peaks, relative, from a mesh with elements twice as large.
+    /// `None` of other bodies, or if it is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh_error: Option<f64>,
     /// Estimated error of the final velocities from the time integration, over the impact speed; of impacts with many
     /// contacts only, which amplify it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -263,6 +267,7 @@ impl Summary {
             flight: None,
             vibration: None,
             truncation_error: None,
+            mesh_error: None,
             integration_error: None,
             choice: None,
             uncertainty: BTreeMap::new(),

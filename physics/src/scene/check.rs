@@ -5,7 +5,7 @@ use super::fault::{Collector, did_you_mean};
 use super::grammar::{Bound, DEFAULT_GEOMETRY, Field, Kind};
 use super::place::Place;
 use super::quantity::{self, Dimension, QuantityError};
-use super::values::{Checked, Values};
+use super::values::{Checked, PLACE, Values};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -149,6 +149,11 @@ impl<'a> Checker<'a> {
             (Kind::Material, DeValue::String(text)) => self.material(place, value, text),
             (Kind::Quantities(dimension, bound, most), DeValue::Array(items)) => {
                 self.quantities(place, value, items, (*dimension, *bound), *most)
+            }
+            (Kind::Place, _) => self.place(place, value),
+            (Kind::Places(most), DeValue::Array(items)) if items.len() <= *most => {
+                let places = items.iter().map(|item| Some(Values::from([(PLACE.to_owned(), self.place(place, item)?)])));
+                Some(Checked::Tables(places.collect::<Option<_>>()?))
             }
             (Kind::Texts(most), DeValue::Array(items)) => self.texts(place, value, items, *most),
             (Kind::Table(fields), DeValue::Table(table)) => {
@@ -299,6 +304,20 @@ impl<'a> Checker<'a> {
         };
         let numbers: Vec<Option<f64>> = items.iter().map(&mut read).collect();
         Some(Checked::Numbers(numbers.into_iter().collect::<Option<_>>()?))
+    }
+
+    /// Reads a name, or three coordinates in m.
+    fn place(&mut self, place: &Place, value: &Spanned<DeValue>) -> Option<Checked> {
+        match value.get_ref() {
+            DeValue::String(name) if !name.trim().is_empty() => Some(Checked::Text(name.to_string())),
+            DeValue::Array(items) if items.len() == 3 => {
+                self.quantities(place, value, items, (Dimension::LENGTH, Bound::ANY), 3)
+            }
+            _ => {
+                let (needed, help) = needed(&Kind::Place, place.path);
+                self.fault(place, value, &format!("but it must be {needed}"), "no place", help)
+            }
+        }
     }
 
     /// Reads a list of texts, the first of which says something.

@@ -43,7 +43,7 @@ impl Bound {
 }
 
 /// One value of a key that has a fixed set of them.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Choice {
     pub(crate) name: &'static str,
 }
@@ -53,7 +53,7 @@ pub(crate) const fn choice(name: &'static str) -> Choice {
 }
 
 /// What stands behind a key.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) enum Kind {
     /// Any text.
     Text,
@@ -67,6 +67,10 @@ pub(crate) enum Kind {
     Quantity(Dimension, Bound),
     /// A list of numbers with units, of at least one and at most so many.
     Quantities(Dimension, Bound, usize),
+    /// A place on a body: a name, or its three coordinates.
+    Place,
+    /// A list of places, of at most so many.
+    Places(usize),
     /// A whole number in a range, both ends valid.
     Count(u64, u64),
     /// true or false.
@@ -86,7 +90,7 @@ pub(crate) enum Kind {
 }
 
 /// One key.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Field {
     pub(crate) key: &'static str,
     pub(crate) kind: Kind,

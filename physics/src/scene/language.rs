@@ -7,7 +7,7 @@ use super::grammar::{Bound, Choice, Field, Kind, choice, optional, positive, pur
 use super::material::MATERIAL;
 use super::quantity::Dimension;
 use super::tolerances::Gated;
-use super::values::Node;
+use super::values::{Node, Values};
 use super::{Model, ReferenceSettings, Setup};
 use crate::error::Result;
 use std::borrow::Cow;
@@ -29,11 +29,27 @@ pub(crate) trait Language: Sync {
         Vec::new()
     }
 
+    /// Puts what other files say into the checked `values` of the scene file `source_name`.
+    ///
+    /// # Errors
+    /// What is wrong with a file.
+    fn find_files(&self, _values: &mut Values, _source_name: &str) -> std::result::Result<(), FileFault> {
+        Ok(())
+    }
+
     /// The bodies that checked values describe, and the settings of their reference.
     ///
     /// # Errors
     /// [`crate::Error::Scene`] for values that do not go together.
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)>;
+}
+
+/// What is wrong with a file that a field of a scene names.
+#[derive(Debug)]
+pub(crate) struct FileFault {
+    pub(crate) field: &'static str,
+    pub(crate) message: String,
+    pub(crate) help: &'static str,
 }
 
 /// Scenes that are read as those of another kind: those with one key and without another.

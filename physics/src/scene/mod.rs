@@ -33,7 +33,7 @@ pub use fault::{Fault, Faults, faults};
 pub use fault::{suggestion, unknown_name};
 pub use field::{Field, Rejected};
 pub use flight::{Flight, FlightSpring, Flyer, Vibration};
-pub(crate) use language::{Alias, Dialect, Grammar, Language};
+pub(crate) use language::{Alias, Dialect, FileFault, Grammar, Language};
 pub use parts::{
     Bender, Edge, Fluid, Inner, Outer, Plate, Series, Shape, ShearThinning, Spot, Stack, Supply,
 };

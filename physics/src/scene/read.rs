@@ -66,12 +66,15 @@ impl Grammar {
             note(material::collisions(&Node(&values))?, root, &mut checker.problems);
             let own = kind.map_or_else(Vec::new, |kind| kind.language.collisions(&Node(&values)));
             note(own, root, &mut checker.problems);
-            if let Err(message) = with_record(&mut values, source_name) {
-                let (place, help) = (
-                    span_of(root, "vibration.file"),
-                    "name a table in the folder of the scene file".to_owned(),
-                );
-                checker.problems.add(place.unwrap_or(0..0), message, "no record", help);
+            let record = with_record(&mut values, source_name).map_err(|message| FileFault {
+                field: "vibration.file",
+                message,
+                help: "name a table in the folder of the scene file",
+            });
+            let own = kind.map_or(Ok(()), |kind| kind.language.find_files(&mut values, source_name));
+            for fault in [record, own].into_iter().filter_map(std::result::Result::err) {
+                let place = span_of(root, fault.field).unwrap_or(0..0);
+                checker.problems.add(place, fault.message, "not usable", fault.help.to_owned());
             }
         }
         match checker.problems.is_empty() {

@@ -146,6 +146,11 @@ fn value(kind: &Kind) -> Value {
         Kind::Texts(most) => json!({
             "type": "array", "items": { "type": "string" }, "minItems": 1, "maxItems": most,
         }),
+        Kind::Place => json!({ "anyOf": [
+            { "type": "string", "minLength": 1 },
+            { "type": "array", "items": quantity(Dimension::LENGTH, Bound::ANY), "minItems": 3, "maxItems": 3 },
+        ] }),
+        Kind::Places(most) => json!({ "type": "array", "items": value(&Kind::Place), "maxItems": most }),
         Kind::Choice(choices) => {
             let names: Vec<&str> = choices.iter().map(|c| c.name).collect();
             json!({ "enum": names })

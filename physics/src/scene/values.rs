@@ -16,6 +16,9 @@ pub(crate) enum Checked {
     Tables(Vec<Values>),
 }
 
+/// Key of a place in each of a list of them.
+pub(crate) const PLACE: &str = "at";
+
 /// The checked values of one table by key.
 pub(crate) type Values = BTreeMap<String, Checked>;
 

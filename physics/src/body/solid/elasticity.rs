@@ -1,5 +1,6 @@
 //! Linear elasticity of straight tetrahedra: stiffness and lumped mass of a body without supports.
 
+use super::curved;
 use super::mesh::{EDGES, TetMesh, volume};
 use crate::scene::Material;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
@@ -9,8 +10,11 @@ use rayon::prelude::*;
 /// Number of a displacement component that is held at zero.
 pub(super) const FIXED: usize = usize::MAX;
 
+/// Elements integrated before they are added.
+const AT_A_TIME: usize = 4096;
+
 /// 3 x 3 block, row by row.
-type Block = [f64; 9];
+pub(super) type Block = [f64; 9];
 
 /// Stiffness by pairs of coupled nodes, in compressed rows, and the nodes' masses.
 #[derive(Debug, Clone)]
@@ -30,22 +34,57 @@ impl SolidMatrices {
     pub fn new(mesh: &TetMesh, material: &Material) -> Self {
         let (start, column) = sparsity(mesh);
         let lame = Lame::of(material);
-        let elements: Vec<Vec<Block>> = mesh
-            .cells
-            .par_chunks(mesh.nodes_per_cell())
-            .map(|cell| element_stiffness(mesh, cell, lame))
-            .collect();
         let mut stiffness = vec![[0.0; 9]; column.len()];
-        for (cell, element) in mesh.cells().zip(elements) {
-            for (row, blocks) in cell.iter().zip(element.chunks_exact(cell.len())) {
-                let columns = &column[start[*row]..start[row + 1]];
-                for (node, block) in cell.iter().zip(blocks) {
-                    let entry = start[*row] + columns.partition_point(|c| c < node);
-                    stiffness[entry].iter_mut().zip(block).for_each(|(sum, part)| *sum += part);
+        // a share of the elements at a time: those of a large mesh would take more memory than the matrix
+        for cells in mesh.cells.chunks(AT_A_TIME * mesh.nodes_per_cell()) {
+            let cells = cells.par_chunks(mesh.nodes_per_cell());
+            let elements: Vec<(&[usize], Vec<Block>)> =
+                cells.map(|cell| (cell, element_stiffness(mesh, cell, lame))).collect();
+            for (cell, element) in elements {
+                for (row, blocks) in cell.iter().zip(element.chunks_exact(cell.len())) {
+                    let columns = &column[start[*row]..start[row + 1]];
+                    for (node, block) in cell.iter().zip(blocks) {
+                        let entry = start[*row] + columns.partition_point(|c| c < node);
+                        stiffness[entry].iter_mut().zip(block).for_each(|(sum, part)| *sum += part);
+                    }
                 }
             }
         }
         Self { start, column, stiffness, mass: lumped_mass(mesh, material.density) }
+    }
+
+    /// Consistent mass in kg of the quadratic elements of `mesh` with this `density` in kg/m^3, between the nodes that are coupled, in the
+    /// order of the rows: the same for all three displacements.
+    pub fn consistent_mass(&self, mesh: &TetMesh, density: f64) -> Vec<f64> {
+        let mut mass = vec![0.0; self.column.len()];
+        for cells in mesh.cells.chunks(AT_A_TIME * curved::NODES) {
+            let cells = cells.par_chunks(curved::NODES);
+            let elements: Vec<_> = cells.map(|cell| (cell, curved::mass(&mesh.places(cell)))).collect();
+            for (cell, element) in elements {
+                for (row, values) in cell.iter().zip(element.chunks_exact(cell.len())) {
+                    let columns = &self.column[self.start[*row]..self.start[row + 1]];
+                    for (node, value) in cell.iter().zip(values) {
+                        mass[self.start[*row] + columns.partition_point(|c| c < node)] += density * value;
+                    }
+                }
+            }
+        }
+        mass
+    }
+
+    /// The matrix of such masses times the displacements `x`, whose free ones have the numbers `dof`.
+    pub fn mass_times(&self, mass: &[f64], dof: &[[usize; 3]], x: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; x.len()];
+        for (node, own) in dof.iter().enumerate() {
+            for entry in self.start[node]..self.start[node + 1] {
+                for (row, column) in own.iter().zip(&dof[self.column[entry]]) {
+                    if *row != FIXED && *column != FIXED {
+                        product[*row] += mass[entry] * x[*column];
+                    }
+                }
+            }
+        }
+        product
     }
 
     /// Largest diagonal element of the stiffness, N/m.
@@ -87,8 +126,9 @@ impl SolidMatrices {
     }
 }
 
+/// Lame's constants in Pa.
 #[derive(Debug, Clone, Copy)]
-struct Lame {
+pub(super) struct Lame {
     lambda: f64,
     mu: f64,
 }
@@ -97,6 +137,25 @@ impl Lame {
     fn of(material: &Material) -> Self {
         let (e, nu) = (material.youngs_modulus, material.poisson_ratio);
         Self { lambda: e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu: e / (2.0 * (1.0 + nu)) }
+    }
+
+    /// Adds to the `blocks` between nodes, row by row, what a point of quadrature gives that has the `weight` in m^3 and where the shape
+    /// functions have the gradients `gradient` in 1/m.
+    pub(super) fn add(self, blocks: &mut [Block], gradient: &[Vector3<f64>], weight: f64) {
+        let n = gradient.len();
+        for (a, ga) in gradient.iter().enumerate() {
+            for (b, gb) in gradient.iter().enumerate() {
+                let block = &mut blocks[a * n + b];
+                let trace = weight * self.mu * ga.dot(gb);
+                for c in 0..3 {
+                    for d in 0..3 {
+                        block[3 * c + d] +=
+                            weight * (self.lambda * ga[c] * gb[d] + self.mu * ga[d] * gb[c]);
+                    }
+                    block[4 * c] += trace;
+                }
+            }
+        }
     }
 }
 
@@ -126,25 +185,14 @@ fn barycentric_gradients(corners: &[Vector3<f64>; 4]) -> ([Vector3<f64>; 4], f64
 
 /// Blocks of the stiffness between the element's nodes, row by row. Shape (n * n).
 fn element_stiffness(mesh: &TetMesh, cell: &[usize], lame: Lame) -> Vec<Block> {
+    if let Some(places) = mesh.bent_places(cell) {
+        return curved::stiffness(&places, lame);
+    }
     let (gradients, volume) = barycentric_gradients(&mesh.corners(cell));
     let n = cell.len();
     let mut blocks = vec![[0.0; 9]; n * n];
-    let mut add = |gradient: &[Vector3<f64>], weight: f64| {
-        for (a, ga) in gradient.iter().enumerate() {
-            for (b, gb) in gradient.iter().enumerate() {
-                let block = &mut blocks[a * n + b];
-                let trace = weight * lame.mu * ga.dot(gb);
-                for c in 0..3 {
-                    for d in 0..3 {
-                        block[3 * c + d] += weight * (lame.lambda * ga[c] * gb[d] + lame.mu * ga[d] * gb[c]);
-                    }
-                    block[4 * c] += trace;
-                }
-            }
-        }
-    };
     if n == 4 {
-        add(&gradients, volume);
+        lame.add(&mut blocks, &gradients, volume);
         return blocks;
     }
     // Hammer, Marlowe & Stroud 1956: four points, exact for the products of linear gradients.
@@ -158,7 +206,7 @@ fn element_stiffness(mesh: &TetMesh, cell: &[usize], lame: Lame) -> Vec<Block> {
         for (k, [a, b]) in EDGES.into_iter().enumerate() {
             gradient[4 + k] = 4.0 * (l[a] * gradients[b] + l[b] * gradients[a]);
         }
-        add(&gradient, 0.25 * volume);
+        lame.add(&mut blocks, &gradient, 0.25 * volume);
     }
     blocks
 }

@@ -1,5 +1,6 @@
 //! Mesh of a solid body: straight-edged tetrahedra, linear or quadratic, read from a VTK file.
 
+use super::curved;
 use crate::error::{Error, Result};
 use nalgebra::Vector3;
 use std::collections::HashMap;
@@ -43,34 +44,44 @@ impl TetMesh {
         Ok(mesh)
     }
 
+    /// As [`Self::new`] of quadratic cells whose edges may be curved.
+    ///
+    /// # Errors
+    /// As [`Self::new`], for a cell that folds instead of a curved edge.
+    pub fn curved(points: Vec<Vector3<f64>>, cells: Vec<usize>) -> std::result::Result<Self, String> {
+        let mesh = Self { points, cells, order: 2 };
+        mesh.check_cells(|number, cell| match curved::least_jacobian(&mesh.places(cell)) > 0.0 {
+            true => Ok(()),
+            false => Err(format!("cell {number} folds: one of its curved edges is turned inside out")),
+        })?;
+        Ok(mesh)
+    }
+
     /// Reads an unstructured grid of tetrahedra (VTK cell type 10 or 24) from a `.vtu` file, in m. Of several bodies, which a
     /// cell array `body` tells apart, it is the first.
     ///
     /// # Errors
     /// [`Error::Solver`] if the file can't be read as VTK or its mesh is unusable.
     pub fn read(path: &Path) -> Result<Self> {
-        let failed = |what: String| Error::Solver(format!("mesh {}: {what}", path.display()));
-        let vtk = Vtk::import(path).map_err(|e| failed(format!("can't be read as VTK: {e}")))?;
-        let piece = grid(vtk).map_err(&failed)?;
-        let points =
-            piece.points.cast_into::<f64>().ok_or_else(|| failed("its points are no numbers".into()))?;
-        let mut points: Vec<_> = points.chunks_exact(3).map(Vector3::from_column_slice).collect();
-        let order = match piece.cells.types.first() {
-            Some(CellType::Tetra) => 1,
-            Some(CellType::QuadraticTetra) => 2,
-            _ => return Err(failed("has no tetrahedra (VTK cell type 10 or 24)".into())),
-        };
-        if piece.cells.types.iter().any(|t| *t != piece.cells.types[0]) {
-            return Err(failed("mixes cells of different types".into()));
-        }
-        let of_first = cells_of_first_body(&piece.data.cell);
-        let mut cells = connectivity(piece.cells.cell_verts, nodes_per_cell(order))
-            .ok_or_else(|| failed("has cells with a wrong number of nodes".into()))?;
+        let file = MeshFile::read(path)?;
+        let of_first = file.cell_array("body").map(|bodies| {
+            let body = bodies.first().copied();
+            bodies.iter().take_while(|other| Some(**other) == body).count()
+        });
+        let MeshFile { mut points, mut cells, order, .. } = file;
         if let Some(count) = of_first {
             cells.truncate(count * nodes_per_cell(order));
             points.truncate(cells.iter().max().map_or(0, |last| last + 1));
         }
-        Self::new(points, cells, order).map_err(failed)
+        Self::new(points, cells, order).map_err(|what| unusable(path, &what))
+    }
+
+    /// Volume in m^3.
+    pub fn volume(&self) -> f64 {
+        let of = |cell: &[usize]| {
+            self.bent_places(cell).map_or_else(|| volume(&self.corners(cell)), |places| curved::volume(&places))
+        };
+        self.cells().map(of).sum()
     }
 
     /// Number of nodes of a cell, 4 or 10.
@@ -81,6 +92,25 @@ impl TetMesh {
     /// The nodes of each cell.
     pub fn cells(&self) -> std::slice::ChunksExact<'_, usize> {
         self.cells.chunks_exact(self.nodes_per_cell())
+    }
+
+    /// Places of the nodes of a quadratic cell.
+    pub(super) fn places(&self, cell: &[usize]) -> [Vector3<f64>; 10] {
+        std::array::from_fn(|a| self.points[cell[a]])
+    }
+
+    /// Those of a cell with a curved edge.
+    pub(super) fn bent_places(&self, cell: &[usize]) -> Option<[Vector3<f64>; 10]> {
+        self.first_bent(cell).map(|_| self.places(cell))
+    }
+
+    /// The first midside node of `cell` that is not in the middle of its edge.
+    fn first_bent(&self, cell: &[usize]) -> Option<usize> {
+        let bent = |([a, b], midside): &([usize; 2], &usize)| {
+            let (a, b) = (self.points[cell[*a]], self.points[cell[*b]]);
+            (0.5 * (a + b)).metric_distance(&self.points[**midside]) > STRAIGHT * a.metric_distance(&b)
+        };
+        EDGES.into_iter().zip(&cell[4..]).find(bent).map(|(_, midside)| *midside)
     }
 
     /// Places of the corners of a cell.
@@ -108,6 +138,17 @@ impl TetMesh {
     }
 
     fn check(&self) -> std::result::Result<(), String> {
+        self.check_cells(|_, cell| match self.first_bent(cell) {
+            Some(node) => Err(format!("node {node} is not in the middle of its edge: edges must be straight")),
+            None => Ok(()),
+        })
+    }
+
+    /// Checks nodes and corners, and each cell by `more`.
+    fn check_cells(
+        &self,
+        more: impl Fn(usize, &[usize]) -> std::result::Result<(), String>,
+    ) -> std::result::Result<(), String> {
         let per_cell = self.nodes_per_cell();
         if self.cells.is_empty() || !self.cells.len().is_multiple_of(per_cell) {
             return Err(format!("{} node numbers are no tetrahedra of {per_cell} nodes", self.cells.len()));
@@ -127,20 +168,75 @@ impl TetMesh {
             if volume(&corners) <= 0.0 {
                 return Err(format!("cell {number} is flat or turned inside out"));
             }
-            for ([a, b], &midside) in EDGES.iter().zip(&cell[4..]) {
-                let (a, b) = (corners[*a], corners[*b]);
-                if (0.5 * (a + b)).metric_distance(&self.points[midside]) > STRAIGHT * a.metric_distance(&b) {
-                    return Err(format!(
-                        "node {midside} is not in the middle of its edge: edges must be straight"
-                    ));
-                }
-            }
+            more(number, cell)?;
         }
         match used.iter().position(|used| !used) {
             Some(node) => Err(format!("node {node} belongs to no cell")),
             None => Ok(()),
         }
     }
+}
+
+/// What a `.vtu` file of tetrahedra holds, unchecked.
+pub(super) struct MeshFile {
+    pub(super) points: Vec<Vector3<f64>>,
+    pub(super) cells: Vec<usize>,
+    order: usize,
+    /// Whole numbers of nodes and of cells, by their names.
+    point_arrays: Vec<(String, Vec<i64>)>,
+    cell_arrays: Vec<(String, Vec<i64>)>,
+}
+
+impl MeshFile {
+    /// # Errors
+    /// [`Error::Solver`] if the file can't be read as VTK or holds other cells.
+    pub(super) fn read(path: &Path) -> Result<Self> {
+        let failed = |what: &str| unusable(path, what);
+        let vtk = Vtk::import(path).map_err(|e| failed(&format!("can't be read as VTK: {e}")))?;
+        let piece = grid(vtk).map_err(|what| failed(&what))?;
+        let points = piece.points.cast_into::<f64>().ok_or_else(|| failed("its points are no numbers"))?;
+        let order = match piece.cells.types.first() {
+            Some(CellType::Tetra) => 1,
+            Some(CellType::QuadraticTetra) => 2,
+            _ => return Err(failed("has no tetrahedra (VTK cell type 10 or 24)")),
+        };
+        if piece.cells.types.iter().any(|t| *t != piece.cells.types[0]) {
+            return Err(failed("mixes cells of different types"));
+        }
+        let cells = connectivity(piece.cells.cell_verts, nodes_per_cell(order))
+            .ok_or_else(|| failed("has cells with a wrong number of nodes"))?;
+        Ok(Self {
+            points: points.chunks_exact(3).map(Vector3::from_column_slice).collect(),
+            cells,
+            order,
+            point_arrays: numbers(&piece.data.point),
+            cell_arrays: numbers(&piece.data.cell),
+        })
+    }
+
+    /// The array of the nodes called `name`.
+    pub(super) fn point_array(&self, name: &str) -> Option<&[i64]> {
+        self.point_arrays.iter().find(|(own, _)| own == name).map(|(_, values)| &values[..])
+    }
+
+    /// The array of the cells called `name`.
+    pub(super) fn cell_array(&self, name: &str) -> Option<&[i64]> {
+        self.cell_arrays.iter().find(|(own, _)| own == name).map(|(_, values)| &values[..])
+    }
+}
+
+/// That the mesh file at `path` is of no use.
+pub(super) fn unusable(path: &Path, what: &str) -> Error {
+    Error::Solver(format!("mesh {}: {what}", path.display()))
+}
+
+/// The arrays of whole numbers among `arrays`.
+fn numbers(arrays: &[Attribute]) -> Vec<(String, Vec<i64>)> {
+    let of = |array: &Attribute| match array {
+        Attribute::DataArray(array) => Some((array.name.clone(), array.data.cast_into::<i64>()?)),
+        Attribute::Field { .. } => None,
+    };
+    arrays.iter().filter_map(of).collect()
 }
 
 fn nodes_per_cell(order: usize) -> usize {
@@ -162,15 +258,6 @@ fn grid(vtk: Vtk) -> std::result::Result<UnstructuredGridPiece, String> {
         Ok([Piece::Inline(piece)]) => Ok(*piece),
         _ => Err("does not consist of one piece".into()),
     }
-}
-
-/// How many cells the first body has, where an array `body` says which one each belongs to; bodies stand one after the other.
-fn cells_of_first_body(arrays: &[Attribute]) -> Option<usize> {
-    let bodies = arrays.iter().find_map(|array| match array {
-        Attribute::DataArray(array) if array.name == "body" => array.data.cast_into::<i64>(),
-        _ => None,
-    })?;
-    Some(bodies.iter().take_while(|body| **body == bodies[0]).count())
 }
 
 /// Node numbers of cells that have `per_cell` nodes each.

@@ -4,13 +4,21 @@
 //! tetrahedra, lumped mass. The interface is the set of nodes at which other bodies may touch; under forces on it the body
 //! answers with its modes, and with the static residual of all the modes that are omitted.
 
+mod continuation;
+mod curved;
 mod elasticity;
 mod factor;
 mod mesh;
+mod meshed;
 mod morph;
+mod pressure;
+mod struck;
 mod surface;
 
 pub use mesh::TetMesh;
+pub use meshed::{BodyMesh, ContactInfo};
+pub use pressure::SurfacePoint;
+pub use struck::{CIRCLES, StruckSolid, StruckPoint};
 pub use surface::Surface;
 
 use super::continuum::lanczos::{ShiftInvert, lowest_modes};

@@ -7,6 +7,9 @@ use crate::kinds::consistency::{
 };
 use crate::result::{History, Outcome, Statement, Summary, Table};
 
+/// The bodies that have a contact of their own, as names begin.
+const CONTACTS: [&str; 2] = ["outer", "inner"];
+
 /// Statements about a result: of its curves only if they can be sampled, and each only if the curves it needs are there.
 pub(super) fn checks(setup: &GeneralImpact, outcome: &Outcome) -> Vec<Statement> {
     let (summary, history) = (&outcome.summary, &outcome.history);
@@ -19,21 +22,19 @@ pub(super) fn checks(setup: &GeneralImpact, outcome: &Outcome) -> Vec<Statement>
         return found;
     }
     let force = history.curve("outer_force");
-    if let Some(force) = force {
-        found.extend(contact(
-            "outer",
-            summary.source,
-            (&history.time, force),
-            Stated::of(summary, "outer"),
-            0.0,
-        ));
+    for body in CONTACTS {
+        if let Some(force) = history.curve(&format!("{body}_force")) {
+            let stated = Stated::of(summary, body);
+            found.extend(contact(body, summary.source, (&history.time, force), stated, 0.0));
+        }
     }
     let interval = summary.sample_interval.unwrap_or(0.0);
     let outer_mass = (!setup.outer.shape.is_mounted()).then(|| setup.outer.shape.mass(&setup.outer.material));
     for (body, mass, sign) in [("outer", outer_mass, 1.0), ("inner", setup.inner_mass(), -1.0)] {
         let curve = |what: &str| history.curve(&format!("{body}_{what}"));
         let Some(velocity) = curve("velocity") else { continue };
-        if let (Some(mass), Some(force)) = (mass, force) {
+        let own = if body == "inner" && setup.body().is_some() { "inner_force" } else { "outer_force" };
+        if let (Some(mass), Some(force)) = (mass, history.curve(own)) {
             found.push(momentum_balance(body, mass, &history.time, velocity, force, sign, interval));
         }
         if let Some(path) = curve("displacement") {
@@ -52,7 +53,10 @@ pub(super) fn checks(setup: &GeneralImpact, outcome: &Outcome) -> Vec<Statement>
 fn energy(setup: &GeneralImpact, summary: &Summary) -> Vec<Statement> {
     let mut found = Vec::new();
     let outer = summary.value("outer_velocity_final");
-    let inner = match setup.inner() {
+    if setup.body().is_some() {
+        return energy_between(setup, summary).into_iter().collect();
+    }
+    let inner = match setup.inner {
         Some(_) => summary.value("inner_velocity_final"),
         None => Some(0.0),
     };
@@ -72,41 +76,62 @@ fn energy(setup: &GeneralImpact, summary: &Summary) -> Vec<Statement> {
     found
 }
 
+/// Energy that both bodies have gained through an elastic one at rest, over what they had.
+fn energy_between(setup: &GeneralImpact, summary: &Summary) -> Option<Statement> {
+    let energy = |mass: f64, speed: f64| 0.5 * mass * speed * speed;
+    let mass = setup.outer.shape.mass(&setup.outer.material);
+    let inner = setup.inner.as_ref().zip(setup.inner_mass());
+    let before = energy(mass, setup.outer.normal_speed()) + inner.map_or(0.0, |(inner, mass)| energy(mass, inner.speed));
+    let moving = inner.map_or(Some(0.0), |(_, mass)| Some(energy(mass, summary.value("inner_velocity_final")?)))?;
+    let after = energy(mass, summary.value("outer_velocity_final")?) + moving;
+    Some(Statement::at_most("energy_gained", "1", after / before - 1.0, 0.0, ENERGY_SLACK))
+}
+
 /// The quantities that the curves of `history` show; those they do not show are not determined.
 pub(super) fn shown(setup: &GeneralImpact, history: &History) -> Table {
     let mut table = Table::new(ImpactQuantities::ALL);
-    let Some(force) = history.curve("outer_force").filter(|_| history.can_be_sampled()) else { return table };
-    let mut set = |name: &str, value: Option<f64>| {
-        if let (Some(slot), Some(value)) = (table.value_mut(name), value) {
+    if !history.can_be_sampled() {
+        return table;
+    }
+    let mut set = |name: String, value: Option<f64>| {
+        if let (Some(slot), Some(value)) = (table.value_mut(&name), value) {
             *slot = Some(value);
         }
     };
-    let floor = FORCE_FLOOR * peak(force);
-    let touches = |k: usize| force[k] > floor;
-    let last = (0..force.len()).rev().find(|k| touches(*k));
-    let begins = (0..force.len()).filter(|&k| touches(k) && (k == 0 || !touches(k - 1))).count();
-    let is_over = last.is_none_or(|k| k + 1 < force.len());
-    set("outer_force_peak", Some(force.iter().copied().fold(0.0, f64::max)));
-    set("outer_contact_end", is_over.then(|| last.map_or(0.0, |k| history.time[k])));
-    set("outer_contacts", is_over.then_some(begins as f64));
-    let impulse =
-        (1..force.len()).map(|k| 0.5 * (history.time[k] - history.time[k - 1]) * (force[k] + force[k - 1]));
-    set("outer_impulse", is_over.then(|| impulse.sum()));
+    let time = &history.time;
+    let contacts = CONTACTS.iter().filter_map(|body| Some((*body, history.curve(&format!("{body}_force"))?)));
+    let mut is_over = true;
+    for (body, force) in contacts {
+        let floor = FORCE_FLOOR * peak(force);
+        let touches = |k: usize| force[k] > floor;
+        let last = (0..force.len()).rev().find(|k| touches(*k));
+        let begins = (0..force.len()).filter(|&k| touches(k) && (k == 0 || !touches(k - 1))).count();
+        let has_ended = last.is_none_or(|k| k + 1 < force.len());
+        let impulse = (1..force.len()).map(|k| 0.5 * (time[k] - time[k - 1]) * (force[k] + force[k - 1]));
+        set(format!("{body}_force_peak"), Some(force.iter().copied().fold(0.0, f64::max)));
+        set(format!("{body}_contact_end"), has_ended.then(|| last.map_or(0.0, |k| time[k])));
+        set(format!("{body}_contacts"), has_ended.then_some(begins as f64));
+        set(format!("{body}_impulse"), has_ended.then(|| impulse.sum()));
+        is_over &= has_ended;
+    }
     let final_of =
         |body: &str| history.curve(&format!("{body}_velocity"))?.last().copied().filter(|_| is_over);
     let outer = final_of("outer").filter(|_| !setup.outer.shape.is_mounted());
-    let inner = setup.inner().and_then(|_| final_of("inner"));
-    set("outer_velocity_final", outer);
-    set("inner_velocity_final", inner);
-    let struck = if setup.inner().is_some() { inner } else { Some(0.0) };
-    set(
-        "outer_restitution",
-        outer.zip(struck).map(|(outer, struck)| (outer - struck) / setup.closing_speed()),
-    );
+    let inner = setup.inner.as_ref().and_then(|_| final_of("inner"));
+    set("outer_velocity_final".into(), outer);
+    set("inner_velocity_final".into(), inner);
+    let struck = match setup.body() {
+        // how a free body moves is not among the curves
+        Some(body) => (!body.fixed.is_empty()).then_some(0.0),
+        None if setup.inner.is_some() => inner,
+        None => Some(0.0),
+    };
+    let restitution = outer.zip(struck).map(|(outer, struck)| (outer - struck) / setup.closing_speed());
+    set("outer_restitution".into(), restitution);
     let mass = setup.outer.shape.mass(&setup.outer.material);
     let efficiency =
         |(inner, velocity): (f64, f64)| inner * velocity.powi(2) / (mass * setup.outer.speed.powi(2));
     let is_mounted = setup.outer.shape.is_mounted();
-    set("efficiency", setup.inner_mass().zip(inner).filter(|_| !is_mounted).map(efficiency));
+    set("efficiency".into(), setup.inner_mass().zip(inner).filter(|_| !is_mounted).map(efficiency));
     table
 }

@@ -1,12 +1,15 @@
 //! An outer body strikes a wall or another body: reduced model C, which has no modes here. With a plate between, see
 //! [`super::plate_impact`].
 
+mod body;
 mod checks;
+mod elastic;
 mod model;
 mod results;
 mod scene;
 mod soundness;
 
+pub use body::{Body, MeshRequest, Mesher, Place, set_mesher};
 pub use model::difference_from_hertz;
 pub use results::{CURVES, ImpactQuantities};
 pub use scene::{GeneralImpact, Struck, Wall};
@@ -53,13 +56,14 @@ impl super::Kind for Kind {
                 scene.name
             )));
         }
-        if let Some(modes) = modes {
+        let has_modes = scene.general_impact()?.body().is_some();
+        if let Some(modes) = modes.filter(|_| !has_modes) {
             return Err(Error::Usage(format!(
                 "--modes {modes}: `{}` has no plate, so that its model has no modes",
                 scene.name
             )));
         }
-        Ok(Box::new(ContactModel::new(scene)?))
+        Ok(Box::new(ContactModel::new(scene, modes)?))
     }
 
     fn judge(&self, scene: &Scene, summary: &mut Summary, _: Option<&History>) {
@@ -82,7 +86,7 @@ impl super::Kind for Kind {
 fn limits(setup: &GeneralImpact, summary: &Summary) -> Vec<Limit> {
     let materials = setup.materials();
     let outer = setup.outer.shape.tip_radius();
-    let curvature = 1.0 / outer + setup.inner().map_or(0.0, |inner| 1.0 / inner.shape.tip_radius());
+    let curvature = 1.0 / outer + setup.struck_inner().map_or(0.0, |inner| 1.0 / inner.shape.tip_radius());
     let law = Hertz::new(1.0 / curvature, &setup.outer.material, &setup.face());
     let is_elastic = materials.iter().all(|material| material.is_elastic());
     let force = summary.value("outer_force_peak").filter(|_| is_elastic);

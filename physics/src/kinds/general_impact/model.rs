@@ -1,11 +1,15 @@
-//! The reduced model: rigid bodies, or a bender or stack with its modes, joined by one contact.
+//! The reduced model: rigid bodies, or a bender or stack with its modes, joined by one contact, or by two with an elastic body between.
 //!
-//! A rigid outer body and the inner one are solved in the frame of the inner one: errors are then relative to the closing speed, however
-//! small it is compared with their own speeds.
+//! A rigid outer body and the inner one, if they meet, are solved in the frame of the inner one: errors are then relative to the closing
+//! speed, however small it is compared with their own speeds.
 
+use super::elastic::ElasticBody;
 use super::scene::sphere_radius;
-use super::{CURVES, GeneralImpact, ImpactQuantities, Kind, Struck};
+use super::{Body, CURVES, GeneralImpact, ImpactQuantities, Kind, Struck};
+use crate::analytical::hertz::HertzImpact;
+use crate::body::ModalBody;
 use crate::body::free_sphere::sphere_residual;
+use crate::contact::Hertz;
 use crate::dynamics::integration::{Converged, Integration, Options};
 use crate::dynamics::memory::{self, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
@@ -16,11 +20,14 @@ use crate::kinds::{Kind as _, SeriesModel};
 use crate::result::{
     BenderSummary, CUT, ElasticLimit, History, Outcome, Point, StackSummary, Summary, Table,
 };
-use crate::scene::{self, Inner, Model, Outer, Scene};
+use crate::scene::{self, Inner, Material, Model, Outer, Scene, Shape};
+use nalgebra::Vector3;
 use std::time::Instant;
 
 /// Tolerance of the runs that compare force peaks with and without what the model omits.
 const LOW_ACCURACY: f64 = 1e-6;
+/// Quantities whose change is the error by modes or mesh.
+const COMPARED: [&str; 3] = ["efficiency", "outer_force_peak", "inner_force_peak"];
 /// Change of the force peak by it from which on there is a warning.
 const NOTABLE: f64 = 0.01;
 
@@ -35,50 +42,86 @@ pub(super) struct ContactModel {
     /// Velocity in m/s along z of the frame in which `system` moves.
     frame: f64,
     memory: Option<Memory>,
+    between: Option<Between>,
+}
+
+/// The elastic body between the contacts.
+#[derive(Debug)]
+struct Between {
+    body: ElasticBody,
+    /// The same impact on the body's coarser mesh.
+    coarse: Option<System>,
+    /// Cosine of the angle between the direction of the outer contact and the inner one's, both along z: 1 on parallel faces.
+    alignment: f64,
+    /// Mass in kg; `None` if the body is held.
+    free_mass: Option<f64>,
+    warnings: Vec<String>,
 }
 
 impl ContactModel {
-    /// Of `scene`.
+    /// Of `scene`, of an elastic body with so many `modes`, or all there are.
     ///
     /// # Errors
     /// [`Error::Scene`] for another kind of scene, [`Error::Solver`] for a stack that does not reach what it strikes, and as [`Memory::new`].
-    pub(super) fn new(scene: &Scene) -> Result<Self> {
+    pub(super) fn new(scene: &Scene, modes: Option<usize>) -> Result<Self> {
         let given = scene.general_impact()?;
         let setup = given.along_normal().into_owned();
         let frame = if setup.outer.shape.is_mounted() { 0.0 } else { setup.struck_velocity() };
         let outer = MovingBody::outer(&Outer { speed: setup.outer.speed + frame, ..setup.outer.clone() })?;
         let face = setup.face();
-        let system = match &setup.struck {
-            Struck::Wall(_) => System::on_wall(outer, &face),
-            Struck::Inner(inner) => {
+        let mut between = None;
+        let system = match (&setup.struck, &setup.inner) {
+            (Some(Struck::Wall(_)), _) => System::on_wall(outer, &face),
+            (Some(Struck::Body(body)), inner) => {
+                let (system, found) = on_body(body, outer, &setup.outer, inner.as_ref(), modes)?;
+                between = Some(found);
+                system
+            }
+            (None, Some(inner)) => {
                 let seen = Inner { speed: inner.speed - frame, gap: 0.0, ..inner.clone() };
                 System::of_two_bodies(outer, MovingBody::inner(&seen))
             }
+            (None, None) => return Err(Error::Internal("the outer body strikes nothing".into())),
         };
-        let memory = Memory::new([&setup.outer.material, &face, &face], None, &system)?;
+        let inner = setup.inner.as_ref().map_or(&*face, |inner| &inner.material);
+        let memory = Memory::new([&setup.outer.material, &face, inner], None, &system)?;
         let normal_share = given.outer.angle.cos().powi(2);
-        Ok(Self { scene: scene.clone(), normal_share, system, frame, memory, setup: setup.clone() })
+        Ok(Self { scene: scene.clone(), normal_share, system, frame, memory, between, setup: setup.clone() })
     }
 
     /// The results of an integration; those that a scene does not have are not determined.
     fn table(&self, result: &Integration) -> Table {
         let outer = &self.setup.outer;
         let [first, second] = result.velocity;
-        let contact = &result.contacts[0];
+        let [contact, behind] = &result.contacts;
         let velocities = [first + self.frame, second + self.frame];
         let energy = |mass: f64, speed: f64| 0.5 * mass * speed * speed;
         let before = energy(self.system.masses[0], outer.speed) / self.normal_share;
+        // velocity of what is struck at the outer contact, and of what pushes the inner body
+        let [struck, pushed] = match &self.between {
+            None => [second, 0.0],
+            Some(between) => between.velocities(contact.impulse, behind.impulse),
+        };
         let mut table = ImpactQuantities {
             efficiency: energy(self.system.masses[1], velocities[1]) / before,
             outer_velocity_final: velocities[0],
             inner_velocity_final: velocities[1],
             outer_force_peak: contact.force_peak,
+            inner_force_peak: behind.force_peak,
             outer_contact_end: contact.end,
+            inner_contact_end: behind.end,
             outer_contacts: contact.contacts,
-            outer_restitution: (first - second) / self.setup.closing_speed(),
+            inner_contacts: behind.contacts,
+            outer_restitution: (first - struck) / self.setup.closing_speed(),
+            inner_restitution: (pushed - second) / self.setup.inner.as_ref().map_or(0.0, |inner| inner.speed),
             outer_impulse: contact.impulse,
+            inner_impulse: behind.impulse,
+            first_frequency: self.system.first_frequency,
         }
         .table();
+        if !table.value("inner_restitution").is_some_and(f64::is_finite) {
+            table.value_mut("inner_restitution").into_iter().for_each(|value| *value = None);
+        }
         let pressed: &[&str] = match result.stop {
             StopReason::Pressed => &["outer_contact_end", "outer_contacts", "outer_impulse"],
             _ => &[],
@@ -135,11 +178,34 @@ impl ContactModel {
         Some(ElasticLimit { outer, inner: None })
     }
 
-    /// Relative change of the force peak by the flexibility of spheres beyond that of Hertz's half-spaces, which the model omits.
+    /// Relative change of the force peak by the flexibility of spheres beyond that of Hertz's half-spaces, which the model omits where there is no
+    /// elastic body; with one, that by fewer of its modes.
+    fn truncation(&self) -> f64 {
+        match &self.between {
+            Some(between) => {
+                let fewer = self.system.lowest(self.system.modes.saturating_sub(between.block()));
+                self.change(&self.system, &fewer)
+            }
+            None => self.omitted_flexibility(),
+        }
+    }
+
+    /// Largest relative difference of efficiency and force peaks between two systems of the scene; infinite where one has none.
+    fn change(&self, own: &System, other: &System) -> f64 {
+        let run = |system: &System| integrate(system, None, &self.options(LOW_ACCURACY)).ok();
+        let Some((own, other)) = run(own).zip(run(other)) else { return f64::INFINITY };
+        let [own, other] = [self.table(&own), self.table(&other)];
+        let relative = |name: &str| {
+            let (own, other) = (own.value(name)?, other.value(name)?);
+            (own != 0.0).then(|| (other / own - 1.0).abs())
+        };
+        COMPARED.iter().filter_map(|name| relative(name)).fold(0.0, f64::max)
+    }
+
     fn omitted_flexibility(&self) -> f64 {
         let hit = self.system.hertz_impact();
         let patch = (self.system.laws[0].tip_radius * hit.approach_peak()).sqrt();
-        let inner = self.setup.inner().map(|inner| (&inner.shape, &inner.material));
+        let inner = self.setup.inner.as_ref().map(|inner| (&inner.shape, &inner.material));
         let bodies = [Some((&self.setup.outer.shape, &self.setup.outer.material)), inner];
         let residual = bodies.into_iter().flatten().filter_map(|(shape, material)| {
             sphere_radius(shape).map(|radius| sphere_residual(radius, material, patch))
@@ -156,14 +222,20 @@ impl ContactModel {
     fn summary(&self, result: &Integration, tolerance: f64) -> Result<Summary> {
         let tolerance = tolerance.max(result.least_tolerance);
         let is_cut = result.stop == StopReason::Cut;
-        let omitted = self.omitted_flexibility();
+        let omitted = self.truncation();
         let mut warnings = scene::doubts(&self.scene);
-        warnings.extend((omitted > NOTABLE).then(|| {
-            format!(
-                "the model omits how spheres deform beyond their contact, which changes the peak force by about {:.1} %",
-                100.0 * omitted
-            )
+        let what = match &self.between {
+            None => "the model omits how spheres deform beyond their contact, which changes the peak force",
+            Some(_) => "the model omits higher modes of the body, which change forces or efficiency",
+        };
+        warnings.extend((omitted > NOTABLE).then(|| format!("{what} by about {:.1} %", 100.0 * omitted)));
+        let mesh_error = self.between.as_ref().and_then(|between| {
+            between.coarse.as_ref().map(|coarse| self.change(&self.system, coarse))
+        });
+        warnings.extend(mesh_error.filter(|error| *error > NOTABLE).map(|error| {
+            format!("the body's mesh changes forces or efficiency by about {:.1} %: refine it", 100.0 * error)
         }));
+        warnings.extend(self.between.iter().flat_map(|between| between.warnings.iter().cloned()));
         warnings.extend(uncertain(result, tolerance));
         if let (Some(memory), true) = (&self.memory, result.least_tolerance > 0.0) {
             warnings.extend(memory.warnings.iter().cloned());
@@ -177,7 +249,7 @@ impl ContactModel {
         warnings.extend(uncountable(result, tolerance));
         warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
         let face_yields = self.setup.face().plasticity().is_some();
-        warnings.extend((face_yields && self.setup.inner().is_some()).then(|| {
+        warnings.extend((face_yields && self.setup.struck_inner().is_some()).then(|| {
             "the law of plastic contacts takes the inner body's tip as flat and the outer one's as more curved instead".into()
         }));
         if self.normal_share < 1.0 {
@@ -193,6 +265,7 @@ impl ContactModel {
             steps: Some(result.steps),
             integration_error: result.error_estimate,
             truncation_error: Some(omitted),
+            mesh_error,
             bender: system.drive.map(|drive| BenderSummary {
                 strain_energy_efficiency: transmitted.map(|energy| energy / drive.strain_energy),
                 drive,
@@ -204,7 +277,7 @@ impl ContactModel {
             }),
             losses: self.memory.is_some().then_some(result.losses),
             warnings,
-            ..Summary::of_reduced(&self.scene, Model::C, 0, self.table(result))
+            ..Summary::of_reduced(&self.scene, Model::C, system.modes, self.table(result))
         })
     }
 
@@ -228,14 +301,80 @@ impl ContactModel {
     }
 }
 
+impl Between {
+    /// Velocities in m/s along z that a free body's centre of mass gets by these impulses in N s, in the directions of outer and inner
+    /// contact; zero of a body that is held.
+    fn velocities(&self, outer: f64, inner: f64) -> [f64; 2] {
+        let Some(mass) = self.free_mass else { return [0.0; 2] };
+        [(inner * self.alignment - outer) / mass, (inner - outer * self.alignment) / mass]
+    }
+
+    /// Modes that the static solutions of all contacts, and so each further block of Ritz vectors, have.
+    fn block(&self) -> usize {
+        2 * self.body.contacts.len()
+    }
+}
+
+/// The system of `outer`, as the scene has it, that strikes `body`, with the `inner` body behind.
+fn on_body(
+    body: &Body,
+    outer: MovingBody,
+    given: &Outer,
+    inner: Option<&Inner>,
+    modes: Option<usize>,
+) -> Result<(System, Between)> {
+    let elastic = ElasticBody::new(body)?;
+    let outer = MovingBody { tip_radius: elastic.tip_radius(0, outer.tip_radius)?, ..outer };
+    let moving = inner.map(|inner| {
+        let moving = MovingBody::inner(inner);
+        Ok(MovingBody { tip_radius: elastic.tip_radius(1, moving.tip_radius)?, ..moving })
+    });
+    let moving = moving.transpose()?;
+    // contact patches under the force of the outer body on a half-space
+    let law = |moving: &MovingBody| Hertz::new(moving.tip_radius, &moving.material, &body.material);
+    let hit = HertzImpact { mass: outer.mass, speed: outer.speed, stiffness: law(&outer).stiffness };
+    let patch = [Some(&outer), moving.as_ref()]
+        .map(|moving| moving.map_or(1.0, |moving| law(moving).contact_radius(hit.force_peak())));
+    let tip = |shape: &Shape, material: &Material, patch: f64| {
+        sphere_radius(shape).map_or(0.0, |radius| sphere_residual(radius, material, patch))
+    };
+    let tips = [
+        tip(&given.shape, &given.material, patch[0]),
+        inner.map_or(0.0, |inner| tip(&inner.shape, &inner.material, patch[1])),
+    ];
+    let join = |modal: ModalBody| match &moving {
+        Some(inner) => System::of(&[outer.clone(), inner.clone()], &modal, &body.material, tips),
+        None => System::on_body(outer.clone(), &modal, &body.material, tips[0]),
+    };
+    let (fine, coarse) = elastic.modal(body, patch);
+    let mut system = join(fine);
+    if let Some(modes) = modes {
+        if modes > system.modes {
+            return Err(Error::Usage(format!("--modes {modes}: the body has {} at most", system.modes)));
+        }
+        system = system.lowest(modes);
+    }
+    let normals: Vec<Vector3<f64>> = elastic.contacts.iter().map(|c| Vector3::from(c.normal)).collect();
+    let mut warnings = elastic.warnings.clone();
+    warnings.extend(elastic.patch_warnings(patch));
+    let between = Between {
+        coarse: coarse.map(join),
+        alignment: normals.get(1).map_or(0.0, |inner| -normals[0].dot(inner)),
+        free_mass: (!elastic.fine.rigid.is_empty()).then(|| body.material.density * elastic.fine.volume),
+        body: elastic,
+        warnings,
+    };
+    Ok((system, between))
+}
+
 /// Relative difference of the force peak of `scene`, with elastic bodies, from Hertz's closed form; `None` for a bender or stack, which
-/// have modes of their own.
+/// have modes of their own, and on an elastic body.
 ///
 /// # Errors
 /// [`Error::Scene`] for another kind of scene, and as [`integrate`].
 pub fn difference_from_hertz(scene: &Scene) -> Result<Option<f64>> {
-    let model = ContactModel::new(scene)?;
-    if model.setup.outer.shape.is_mounted() {
+    let model = ContactModel::new(scene, None)?;
+    if model.between.is_some() || model.setup.outer.shape.is_mounted() {
         return Ok(None);
     }
     let hit = model.system.hertz_impact();

@@ -1,9 +1,10 @@
-//! What the results of an impact on a wall or another body are called.
+//! What the results of an impact on a wall, an elastic body or another body are called.
 
 use crate::result::{Curve, quantities};
 
 quantities! {
-    /// Results of an impact on a wall or another body (scene kind `impact`); before a wall those of the inner body are not determined.
+    /// Results of an impact on a wall, an elastic body or another body (scene kind `impact`). Those of an inner body, and of its contact with an
+    /// elastic body, are not determined where there is none.
     ImpactQuantities {
         /// Eq. (1): kinetic energy of the inner body after the last contact over that of the outer before the first.
         efficiency: f64, "1";
@@ -11,25 +12,39 @@ quantities! {
         outer_velocity_final: f64, "m/s", of outer_velocity;
         /// Velocity of the inner body after the last contact, m/s, signed along z.
         inner_velocity_final: f64, "m/s", of inner_velocity;
-        /// Largest contact force, N.
+        /// Largest contact force of the outer body, N.
         outer_force_peak: f64, "N", of outer_force;
-        /// Time of the last release, s.
+        /// Largest force between an elastic body and the inner one, N.
+        inner_force_peak: f64, "N", of inner_force;
+        /// Time of the outer body's last release, s.
         outer_contact_end: f64, "s";
-        /// Number of separate contacts.
+        /// Time of the inner body's last release, s.
+        inner_contact_end: f64, "s";
+        /// Number of separate contacts of the outer body.
         outer_contacts: u32, "1";
-        /// Relative normal velocity after the last contact over that before the first.
+        /// Number of separate contacts of the inner body.
+        inner_contacts: u32, "1";
+        /// Relative normal velocity after the last contact over that before the first, an elastic body's by its centre of mass.
         outer_restitution: f64, "1";
-        /// Impulse of the contact force, N s.
+        /// The same of the inner contact, where the inner body moves before it.
+        inner_restitution: f64, "1";
+        /// Impulse of the outer contact, N s.
         outer_impulse: f64, "N*s";
+        /// Impulse of the inner contact, N s.
+        inner_impulse: f64, "N*s";
+        /// Lowest frequency of an elastic body that the contacts excite, Hz.
+        first_frequency: f64, "Hz";
     }
 }
 
-/// Displacements in m since t = 0 and velocities, signed along z, and the force in N, positive in compression; those of the inner body are
-/// missing before a wall.
-pub static CURVES: [Curve; 5] = [
+/// Displacements in m since t = 0 and velocities, signed along z, and forces in N, positive in compression; those of an inner body are missing
+/// where there is none. On an elastic body z is the outward normal at the outer contact for the outer body, the inward one at its contact for
+/// the inner body.
+pub static CURVES: [Curve; 6] = [
     Curve::new("outer_displacement", "m"),
     Curve::new("inner_displacement", "m"),
     Curve::new("outer_velocity", "m/s"),
     Curve::new("inner_velocity", "m/s"),
     Curve::new("outer_force", "N"),
+    Curve::new("inner_force", "N"),
 ];

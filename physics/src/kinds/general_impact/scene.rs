@@ -1,6 +1,7 @@
 //! The scene: a body strikes a wall, or another body.
 
 use super::NAME;
+use super::body::{Body, find_file, place};
 use super::soundness::key_collisions;
 use crate::error::Result;
 use crate::kinds::body_keys::{INNER, OUTER, SERIES};
@@ -8,10 +9,13 @@ use crate::kinds::body_reading;
 use crate::kinds::plate_impact::PLATE;
 use crate::material::Material;
 use crate::scene::collision::Collision;
-use crate::scene::grammar::{Field, Kind, choice, optional, required};
+use crate::scene::grammar::{
+    BODY_MATERIAL, Bound, Field, Kind, choice, optional, positive, pure, required,
+};
 use crate::scene::material::material;
-use crate::scene::values::Node;
-use crate::scene::{Alias, Geometry, Inner, Language, Outer, ReferenceSettings, Scene, Series, Setup, Shape};
+use crate::scene::quantity::Dimension;
+use crate::scene::values::{Node, Values};
+use crate::scene::{Alias, FileFault, Geometry, Inner, Language, Outer, ReferenceSettings, Scene, Series, Setup, Shape};
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -22,14 +26,14 @@ pub struct Wall {
     pub material: Option<Material>,
 }
 
-/// What the outer body strikes.
+/// What the outer body strikes, if not the inner one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Struck {
     /// A wall; there is no inner body.
     Wall(Wall),
-    /// The inner body, with nothing between.
-    Inner(Inner),
+    /// An elastic body; the inner one lies behind it, if there is one.
+    Body(Body),
 }
 
 /// An outer body, and what it strikes.
@@ -37,9 +41,12 @@ pub enum Struck {
 pub struct GeneralImpact {
     /// The striking body.
     pub outer: Outer,
-    /// What it strikes.
+    /// What it strikes; `None` = the inner body.
     #[serde(flatten)]
-    pub struck: Struck,
+    pub struck: Option<Struck>,
+    /// The inner body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inner: Option<Inner>,
     /// How often the impact is repeated, if it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<Series>,
@@ -55,53 +62,59 @@ impl GeneralImpact {
         Cow::Owned(Self { outer, ..self.clone() })
     }
 
-    /// The inner body, if there is one.
-    pub fn inner(&self) -> Option<&Inner> {
-        match &self.struck {
-            Struck::Wall(_) => None,
-            Struck::Inner(inner) => Some(inner),
-        }
+    /// The elastic body that is struck, if there is one.
+    pub fn body(&self) -> Option<&Body> {
+        if let Some(Struck::Body(body)) = &self.struck { Some(body) } else { None }
     }
 
-    /// Material of what is struck.
+    /// The inner body if nothing lies between it and the outer one.
+    pub fn struck_inner(&self) -> Option<&Inner> {
+        self.inner.as_ref().filter(|_| self.struck.is_none())
+    }
+
+    /// Material of what is struck; of a rigid wall one that does not deform.
     pub fn face(&self) -> Cow<'_, Material> {
-        match &self.struck {
-            Struck::Wall(Wall { material: Some(material) }) | Struck::Inner(Inner { material, .. }) => {
-                Cow::Borrowed(material)
-            }
-            Struck::Wall(Wall { material: None }) => Cow::Owned(Material::rigid()),
-        }
-    }
-
-    /// Materials of both bodies; a rigid wall has none.
-    pub fn materials(&self) -> Vec<&Material> {
-        let face = match &self.struck {
-            Struck::Wall(wall) => wall.material.as_ref(),
-            Struck::Inner(inner) => Some(&inner.material),
+        let material = match &self.struck {
+            Some(Struck::Wall(wall)) => wall.material.as_ref(),
+            Some(Struck::Body(body)) => Some(&body.material),
+            None => self.inner.as_ref().map(|inner| &inner.material),
         };
-        [Some(&self.outer.material), face].into_iter().flatten().collect()
+        material.map_or_else(|| Cow::Owned(Material::rigid()), Cow::Borrowed)
     }
 
-    /// Mass of the inner body in kg; `None` before a wall.
+    /// Materials of all bodies; a rigid wall has none.
+    pub fn materials(&self) -> Vec<&Material> {
+        let between = match &self.struck {
+            Some(Struck::Wall(wall)) => wall.material.as_ref(),
+            Some(Struck::Body(body)) => Some(&body.material),
+            None => None,
+        };
+        let inner = self.inner.as_ref().map(|inner| &inner.material);
+        [Some(&self.outer.material), between, inner].into_iter().flatten().collect()
+    }
+
+    /// Mass of the inner body in kg; `None` without one.
     pub fn inner_mass(&self) -> Option<f64> {
-        self.inner().map(|inner| inner.shape.mass(&inner.material))
+        self.inner.as_ref().map(|inner| inner.shape.mass(&inner.material))
     }
 
-    /// Whether results have the quantity or curve called `name`: a wall does not move, a clamped body has an energy of its own, and the tip of a
-    /// stack vibrates on.
+    /// Whether results have the quantity or curve called `name`: a wall does not move, a clamped body has an energy of its own, the tip of a
+    /// stack vibrates on, and a contact of the inner body's own needs a body between.
     pub fn has(&self, name: &str) -> bool {
         let outer = &self.outer.shape;
         match name {
-            "efficiency" => self.inner().is_some() && !matches!(outer, Shape::Stack(_)),
+            "efficiency" => self.inner.is_some() && !matches!(outer, Shape::Stack(_)),
             "outer_velocity_final" => !matches!(outer, Shape::Stack(_)),
             "outer_restitution" => !outer.is_mounted(),
-            _ => self.inner().is_some() || !name.starts_with("inner"),
+            "first_frequency" => self.body().is_some(),
+            "inner_displacement" | "inner_velocity" | "inner_velocity_final" => self.inner.is_some(),
+            _ => !name.starts_with("inner") || (self.inner.is_some() && self.body().is_some()),
         }
     }
 
     /// Velocity of what is struck at t = 0 in m/s along z.
     pub fn struck_velocity(&self) -> f64 {
-        self.inner().map_or(0.0, |inner| inner.speed)
+        self.struck_inner().map_or(0.0, |inner| inner.speed)
     }
 
     /// Speed in m/s at which the bodies approach each other at t = 0; of a stack that of its tip after a step of the voltage.
@@ -125,6 +138,41 @@ static WALL: [Field; 2] = [
     optional("rigid", Kind::Flag, "`true` instead of a material: the wall does not deform"),
 ];
 
+/// Most places that hold a body, and most frequencies.
+const MOST_FIXED: usize = 64;
+
+static BODY: [Field; 6] = [
+    required("file", Kind::Text, "Mesh (.msh .inp .bdf .med .vtu) or CAD file (.step .stp), relative to the scene file"),
+    optional(
+        "unit",
+        Kind::Choice(&[choice("m"), choice("mm"), choice("um"), choice("cm"), choice("in")]),
+        "Unit of length in the file; absent = STEP's own, else m",
+    ),
+    BODY_MATERIAL,
+    optional(
+        "fixed",
+        Kind::Places(MOST_FIXED),
+        "What does not move: names of groups, sets or faces, or points on faces; absent or empty = the body is free",
+    ),
+    optional(
+        "element_size",
+        positive(Dimension::LENGTH),
+        "Largest size of elements, of CAD; absent = half the thickness of each wall",
+    ),
+    optional(
+        "damping_ratio",
+        pure(Bound { low: Some((0.0, true)), high: Some((1.0, false)) }),
+        "Modal damping ratio, the same for every mode; absent = 0",
+    ),
+];
+
+/// Where a body strikes.
+const AT: Field = optional(
+    "at",
+    Kind::Place,
+    "Place on the surface of [body]: the name of a point, set or face, or three coordinates in its file's system",
+);
+
 static REDUCED: [Field; 1] =
     [optional("model", Kind::Choice(&[choice("C")]), "Model to run: without a plate there is model C only")];
 
@@ -141,11 +189,12 @@ impl Language for super::Kind {
                 Kind::Table(&WALL),
                 "Flat wall that the outer body strikes; there is no inner body",
             ),
-            required("outer", Kind::Table(&OUTER), "The body that strikes"),
+            optional("body", Kind::Table(&BODY), "Elastic body from a mesh or CAD file that the outer body strikes"),
+            required("outer", Kind::Table(with_place(&OUTER)), "The body that strikes"),
             optional(
                 "inner",
-                Kind::Table(&INNER),
-                "The body that is struck, required without plate and wall",
+                Kind::Table(with_place(&INNER)),
+                "The body that is struck, required without plate, body and wall",
             ),
             optional(
                 "series",
@@ -169,20 +218,36 @@ impl Language for super::Kind {
         key_collisions(root)
     }
 
+    fn find_files(&self, values: &mut Values, source_name: &str) -> std::result::Result<(), FileFault> {
+        let help = "name a file in the folder of the scene file";
+        find_file(values, source_name).map_err(|message| FileFault { field: "body.file", message, help })
+    }
+
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)> {
-        let of = |wall: &Node| match wall.0.contains_key("material") {
-            true => material(materials, wall.text("material")?).map(Some),
-            false => Ok(None),
+        let (outer_table, inner_table) = (root.table("outer")?, root.optional_table("inner")?);
+        let struck = match (root.optional_table("wall")?, root.optional_table("body")?) {
+            (Some(wall), _) => {
+                let material = wall.0.contains_key("material").then(|| material(materials, wall.text("material")?));
+                Some(Struck::Wall(Wall { material: material.transpose()? }))
+            }
+            (None, Some(body)) => {
+                let inner = inner_table.as_ref().map(|inner| place(inner, "at")).transpose()?;
+                let at = [place(&outer_table, "at")?, inner.flatten()];
+                Some(Struck::Body(Body::read(&body, material(materials, body.text("material")?)?, at)?))
+            }
+            (None, None) => None,
         };
-        let struck = match root.optional_table("wall")? {
-            Some(wall) => Struck::Wall(Wall { material: of(&wall)? }),
-            None => Struck::Inner(body_reading::inner(&root.table("inner")?, materials)?),
-        };
-        let outer = body_reading::outer(&root.table("outer")?, materials)?;
+        let inner = inner_table.map(|inner| body_reading::inner(&inner, materials)).transpose()?;
+        let outer = body_reading::outer(&outer_table, materials)?;
         let series = body_reading::series(root)?;
-        let setup = GeneralImpact { outer, struck, series };
+        let setup = GeneralImpact { outer, struck, inner, series };
         Ok((Setup::new(setup), ReferenceSettings::of(Geometry::Axisymmetric)))
     }
+}
+
+/// The keys of a body, with the place at which it strikes.
+fn with_place(fields: &[Field]) -> &'static [Field] {
+    [fields, &[AT]].concat().leak()
 }
 
 /// Radius in m of a sphere.

@@ -19,13 +19,32 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
     let is_rigid = wall.as_ref().is_some_and(|wall| matches!(wall.0.get("rigid"), Some(Checked::Flag(true))));
     let has_material = wall.as_ref().is_some_and(|wall| wall.0.contains_key("material"));
     let is_mounted = outer.is_some_and(|outer| outer.text("kind").is_ok_and(|kind| MOUNTED.contains(&kind)));
+    let place = |name: &str| table(name).is_some_and(|table| table.0.contains_key("at"));
     let ends = run.is_some_and(|run| run.0.contains_key("end_time"));
     broken(vec![
         Rule {
-            fields: vec!["wall"],
-            holds: !(has("plate") && has("wall")),
-            message: "the scene has [plate] and [wall], but the outer body strikes one of them".into(),
-            help: "remove [plate] or [wall]",
+            fields: vec!["wall", "body"],
+            holds: ["plate", "body", "wall"].into_iter().filter(|name| has(name)).count() < 2,
+            message: "the scene has two of [plate], [body] and [wall], but the outer body strikes one of them".into(),
+            help: "keep one of them",
+        },
+        Rule {
+            fields: vec!["outer.at", "inner.at"],
+            holds: has("body") || !(place("outer") || place("inner")),
+            message: "`at` is a place on [body], but the scene has no [body]".into(),
+            help: "remove `at`",
+        },
+        Rule {
+            fields: vec!["outer"],
+            holds: !has("body") || place("outer"),
+            message: "`outer.at` is missing: where on [body] the outer body strikes".into(),
+            help: "add `at` to [outer]: the name of a point, set or face, or three coordinates",
+        },
+        Rule {
+            fields: vec!["inner"],
+            holds: !(has("body") && has("inner")) || place("inner"),
+            message: "`inner.at` is missing: where on [body] the inner body lies".into(),
+            help: "add `at` to [inner]: the name of a point, set or face, or three coordinates",
         },
         Rule {
             fields: vec!["inner"],
@@ -35,10 +54,10 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
         },
         Rule {
             fields: vec!["kind"],
-            holds: has("wall") || has("inner"),
-            message: "`inner` is missing: without [plate] and [wall] the outer body strikes the inner one"
+            holds: has("wall") || has("body") || has("inner"),
+            message: "`inner` is missing: without [plate], [body] and [wall] the outer body strikes the inner one"
                 .into(),
-            help: "add [inner] with kind, radius and material; or [wall] or [plate]",
+            help: "add [inner] with kind, radius and material; or [wall], [body] or [plate]",
         },
         Rule {
             fields: vec!["wall.rigid"],
@@ -122,6 +141,12 @@ impl Bodies for GeneralImpact {
                 help: "remove [series], or use another outer body",
             },
             Rule {
+                fields: vec!["body.material"],
+                holds: self.body().is_none_or(|body| body.material.relaxation.is_empty()),
+                message: "`body.material` is viscoelastic, which is not supported for a body from a mesh".into(),
+                help: "remove `relaxation` and `loss_factor` of the material, or use `damping_ratio`",
+            },
+            Rule {
                 fields: vec!["outer.material"],
                 holds: !(yields && relaxes),
                 message: "the contact joins a plastic and a viscoelastic material, which is not supported".into(),
@@ -137,10 +162,10 @@ impl Bodies for GeneralImpact {
                 found.push(doubt);
             }
         }
-        let inner = self.inner().map(|inner| ("inner's tip radius", inner.shape.tip_radius()));
+        let inner = self.inner.as_ref().map(|inner| ("inner's tip radius", inner.shape.tip_radius()));
         let lengths = [("outer's tip radius", self.outer.shape.tip_radius())].into_iter().chain(inner);
         found.extend(lengths.filter_map(|(name, value)| outside(name, value, LENGTH, "m")));
-        if self.inner().is_some_and(|inner| inner.gap > 0.0) {
+        if self.struck_inner().is_some_and(|inner| inner.gap > 0.0) {
             found.push("inner.gap changes no result: nothing lies between the bodies, and t = 0 is their first contact".into());
         }
         if self.series.is_some() && self.materials().iter().all(|material| material.plasticity().is_none()) {

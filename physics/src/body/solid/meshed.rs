@@ -1,0 +1,103 @@
+//! The mesh of a body as the mesher writes it: quadratic tetrahedra with what is held, and a description of the contacts.
+
+use super::mesh::{MeshFile, TetMesh, unusable};
+use super::pressure::SurfacePoint;
+use super::struck::{CIRCLES, StruckPoint};
+use crate::error::{Error, Result};
+use nalgebra::Vector3;
+use serde::Deserialize;
+use std::path::Path;
+
+/// Largest circle over the thickness of the wall and over the distance to an edge: larger ones see the other side, or leave the face.
+const OF_WALL: f64 = 0.5;
+const OF_EDGE: f64 = 0.8;
+
+/// A body's mesh.
+#[derive(Debug)]
+pub struct BodyMesh {
+    /// Quadratic tetrahedra, curved where the source is.
+    pub mesh: TetMesh,
+    /// Which nodes do not move. Shape (nodes).
+    pub fixed: Vec<bool>,
+}
+
+/// The surface of a body where it is struck.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct ContactInfo {
+    /// Place on the surface in m.
+    pub point: [f64; 3],
+    /// Distance in m of the place that the scene names.
+    pub distance: f64,
+    /// Outward normal of length 1.
+    pub normal: [f64; 3],
+    /// Principal curvatures in 1/m, positive where the surface is convex.
+    pub curvatures: [f64; 2],
+    /// Whether these are the CAD's, of a fit to the mesh, or none: the surface is taken as flat.
+    pub curvature_source: String,
+    /// Size of the elements there in m.
+    pub element_size: f64,
+    /// Thickness of the wall in m along the normal.
+    pub wall: f64,
+    /// Elements through the wall.
+    pub layers: f64,
+    /// Distance in m to the nearest edge of the face.
+    pub edge_distance: f64,
+}
+
+/// What the description of a mesh says that models need.
+#[derive(Debug, Clone, Deserialize)]
+pub struct BodyMeshInfo {
+    /// By body.
+    pub contacts: Contacts,
+}
+
+/// Where outer and inner body strike.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Contacts {
+    outer: ContactInfo,
+    inner: Option<ContactInfo>,
+}
+
+impl BodyMesh {
+    /// Reads the mesh in a `.vtu` file.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if it can't be read or is unusable.
+    pub fn read(path: &Path) -> Result<Self> {
+        let file = MeshFile::read(path)?;
+        let missing = || unusable(path, "does not say which nodes are fixed");
+        let fixed = file.point_array("fixed").ok_or_else(missing)?.iter().map(|value| *value != 0).collect();
+        let mesh = TetMesh::curved(file.points, file.cells).map_err(|what| unusable(path, &what))?;
+        Ok(Self { mesh, fixed })
+    }
+
+    /// The contacts that the description of the mesh file at `path` names: that of the outer body, and of the inner one if it has one.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if it can't be read.
+    pub fn contacts(path: &Path) -> Result<Vec<ContactInfo>> {
+        let path = path.with_extension("json");
+        let text = std::fs::read_to_string(&path).map_err(|e| Error::io("reading", &path, e))?;
+        let info: BodyMeshInfo =
+            serde_json::from_str(&text).map_err(|e| unusable(&path, &format!("is no description of a mesh: {e}")))?;
+        Ok([Some(info.contacts.outer), info.contacts.inner].into_iter().flatten().collect())
+    }
+}
+
+impl ContactInfo {
+    /// The place, and the circles on which the flexibility is found.
+    pub fn struck(&self) -> StruckPoint {
+        let largest = CIRCLES[2] * self.element_size;
+        let bound = (OF_WALL * self.wall).min(OF_EDGE * self.edge_distance);
+        let scale = (bound / largest).min(1.0);
+        StruckPoint {
+            at: SurfacePoint { point: Vector3::from(self.point), normal: Vector3::from(self.normal) },
+            circles: CIRCLES.map(|circle| scale * circle * self.element_size),
+        }
+    }
+
+    /// Largest circle over that which the mesh would resolve well; below 1 the elements are too large for the wall or the face.
+    pub fn resolution(&self) -> f64 {
+        self.struck().circles[2] / (CIRCLES[2] * self.element_size)
+    }
+}

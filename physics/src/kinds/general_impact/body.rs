@@ -1,0 +1,175 @@
+//! An elastic body from a mesh or a CAD file, as a scene describes it.
+
+use crate::error::{Error, Result};
+use crate::material::Material;
+use crate::scene::hash::{canonical, sha256_hex};
+use crate::scene::values::{Checked, Node, PLACE, Values};
+use serde::Serialize;
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// Number of the method that makes meshes, part of their keys: raise it when one comes out otherwise.
+const MESH_REVISION: u32 = 1;
+/// Largest file in bytes.
+const MAX_BYTES: u64 = 2_000_000_000;
+/// Key under which the checked values keep the content's hash.
+const CONTENT: &str = "content";
+
+/// A place on the surface of a body.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Place {
+    /// Name of a point, set, group or face in the file.
+    Name(String),
+    /// Coordinates in m.
+    Point([f64; 3]),
+}
+
+/// An elastic body whose shape is in a file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Body {
+    /// The file, a mesh or CAD.
+    #[serde(skip)]
+    pub file: PathBuf,
+    /// SHA-256 (hexadecimal) of its content.
+    pub content: String,
+    /// Size in m of the file's unit of length; `None` = the file knows its own, or m.
+    pub unit: Option<f64>,
+    /// Material.
+    pub material: Material,
+    /// What does not move; nothing = the body is free.
+    pub fixed: Vec<Place>,
+    /// Size of elements away from the contacts in m, of CAD; `None` = by the thickness of walls.
+    pub element_size: Option<f64>,
+    /// Modal damping ratio (Lehr), the same for every mode; 0 = undamped.
+    pub damping_ratio: f64,
+    /// Where outer and inner body strike; `None` for an inner body that is not there.
+    pub at: [Option<Place>; 2],
+}
+
+impl Body {
+    /// The body that the checked table `body` describes, struck at the places `at`.
+    pub(super) fn read(body: &Node, material: Material, at: [Option<Place>; 2]) -> Result<Self> {
+        let unit = match body.0.get("unit") {
+            Some(Checked::Text(unit)) => Some(UNITS.iter().find(|(name, _)| name == unit).map_or(1.0, |u| u.1)),
+            _ => None,
+        };
+        let fixed = body.tables("fixed")?.iter().map(|entry| place(entry, PLACE)).collect::<Result<Vec<_>>>()?;
+        Ok(Self {
+            file: body.text("file")?.into(),
+            content: body.text(CONTENT)?.to_owned(),
+            unit,
+            material,
+            fixed: fixed.into_iter().flatten().collect(),
+            element_size: body.optional_number("element_size")?,
+            damping_ratio: body.number_or("damping_ratio", 0.0)?,
+            at,
+        })
+    }
+
+    /// What its mesh depends on, with elements `factor` times as large as by default.
+    pub fn mesh_request(&self, factor: f64) -> MeshRequest {
+        let contact = |at: &Option<Place>| at.as_ref().map(|at| json!({ "at": at }));
+        let document = json!({
+            "kind": super::NAME,
+            "body": {
+                "unit": self.unit, "fixed": self.fixed, "element_size": self.element_size, "materials": null,
+            },
+            "outer": contact(&self.at[0]),
+            "inner": contact(&self.at[1]),
+        });
+        let key = json!({ "document": document, "content": self.content, "factor": factor, "revision": MESH_REVISION });
+        let key = sha256_hex(canonical(&key).as_bytes());
+        let mut document = document;
+        document["body"]["path"] = json!(self.file);
+        MeshRequest { document, factor, key }
+    }
+}
+
+/// Units of length that a file may be in.
+pub(super) const UNITS: [(&str, f64); 5] =
+    [("m", 1.0), ("mm", 1e-3), ("um", 1e-6), ("cm", 1e-2), ("in", 0.0254)];
+
+/// A mesh of a body that is wanted.
+#[derive(Debug, Clone)]
+pub struct MeshRequest {
+    /// The body and its contacts, as the mesher reads them.
+    pub document: Value,
+    /// Size of the elements over that by default.
+    pub factor: f64,
+    /// SHA-256 of all that the mesh depends on.
+    pub key: String,
+}
+
+/// Makes a mesh, or finds the one that is there: a `.vtu` file with its description in the `.json` file of the same name.
+pub type Mesher = fn(&MeshRequest) -> Result<PathBuf>;
+
+static MESHER: OnceLock<Mesher> = OnceLock::new();
+
+/// Says how meshes of bodies are made: this crate reads them only. The first call counts.
+pub fn set_mesher(mesher: Mesher) {
+    let _ = MESHER.set(mesher);
+}
+
+/// The mesh that is wanted.
+///
+/// # Errors
+/// Those of the mesher; [`Error::Internal`] if none was set.
+pub(super) fn mesh(request: &MeshRequest) -> Result<PathBuf> {
+    let mesher = MESHER.get().ok_or_else(|| {
+        Error::Internal("meshes of bodies are made by the program: call `set_mesher` first".into())
+    })?;
+    mesher(request)
+}
+
+/// The place under `key`, if it is there.
+pub(super) fn place(node: &Node, key: &str) -> Result<Option<Place>> {
+    Ok(match node.0.get(key) {
+        Some(Checked::Text(name)) => Some(Place::Name(name.clone())),
+        Some(Checked::Numbers(at)) => {
+            let at = <[f64; 3]>::try_from(&at[..]).map_err(|_| Error::Internal(format!("`{key}` is no place")))?;
+            Some(Place::Point(at))
+        }
+        _ => None,
+    })
+}
+
+/// Finds the file that `body.file` names, relative to the scene file `source_name`, and what is in it.
+///
+/// # Errors
+/// A sentence about the file.
+pub(super) fn find_file(values: &mut Values, source_name: &str) -> std::result::Result<(), String> {
+    let Some(Checked::Table(body)) = values.get_mut("body") else { return Ok(()) };
+    let Some(Checked::Text(name)) = body.get("file") else { return Ok(()) };
+    let path = Path::new(source_name).parent().unwrap_or(Path::new("")).join(name);
+    let content = content(&path).map_err(|why| format!("`body.file` is \"{name}\", {why}"))?;
+    let path = std::path::absolute(&path).unwrap_or(path);
+    body.insert("file".into(), Checked::Text(path.to_string_lossy().into_owned()));
+    body.insert(CONTENT.into(), Checked::Text(content));
+    Ok(())
+}
+
+/// SHA-256 of a file.
+fn content(path: &Path) -> std::result::Result<String, String> {
+    let refused = |error: std::io::Error| format!("but \"{}\" can't be read: {error}", path.display());
+    // before it is opened, for which a pipe would wait
+    let metadata = std::fs::metadata(path).map_err(refused)?;
+    if !metadata.is_file() {
+        return Err(format!("but \"{}\" is no file", path.display()));
+    }
+    if metadata.len() > MAX_BYTES {
+        return Err(format!("which has {} bytes; a body's file has at most {MAX_BYTES}", metadata.len()));
+    }
+    let mut file = File::open(path).map_err(refused)?;
+    let (mut hash, mut part) = (Sha256::new(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut part).map_err(refused)? {
+            0 => return Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()),
+            read => hash.update(&part[..read]),
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! The struck body's reduced form, from its mesh and from a coarser one that shows what the mesh changes.
+
+use super::body::{Body, mesh};
+use crate::body::ModalBody;
+use crate::body::cache::Cache;
+use crate::body::solid::{BodyMesh, ContactInfo, StruckSolid};
+use crate::contact::effective_radius;
+use crate::error::{Error, Result};
+use crate::scene::hash::sha256_hex;
+use serde_json::json;
+
+/// Number of the method that reduces bodies, part of every key: raise it when one comes out otherwise.
+const REVISION: u32 = 1;
+/// Elements of the coarser mesh over those of the mesh itself.
+const COARSER: f64 = 2.0;
+/// Layers of elements through the wall below which frequencies are some tenths of a per cent too high.
+const LAYERS: f64 = 2.0;
+/// Contact patches that an edge has to be away, at least.
+const FROM_EDGE: f64 = 3.0;
+/// Largest patch over the thickness of the wall that was compared with models of plates.
+const OF_WALL: f64 = 0.5;
+/// Largest circle over that which the mesh would resolve well, below which there is a warning.
+const RESOLVED: f64 = 0.7;
+
+/// A body reduced on its mesh, and on a coarser one if there is one.
+#[derive(Debug, Clone)]
+pub(super) struct ElasticBody {
+    pub(super) fine: StruckSolid,
+    pub(super) coarse: Option<StruckSolid>,
+    /// Where outer and, if there is one, inner body strike.
+    pub(super) contacts: Vec<ContactInfo>,
+    /// What the user has to know of them.
+    pub(super) warnings: Vec<String>,
+}
+
+impl ElasticBody {
+    /// Of `body`.
+    ///
+    /// # Errors
+    /// Those of the mesher, [`Error::Solver`] for a mesh that is of no use.
+    pub(super) fn new(body: &Body) -> Result<Self> {
+        let path = mesh(&body.mesh_request(1.0))?;
+        let contacts = BodyMesh::contacts(&path)?;
+        let fine = reduced(body, &path, &contacts)?;
+        let mut warnings = Vec::new();
+        let coarse = mesh(&body.mesh_request(COARSER))
+            .and_then(|path| reduced(body, &path, &BodyMesh::contacts(&path)?))
+            .map_err(|why| {
+                warnings.push(format!(
+                    "the error by the mesh is not known, because no coarser mesh of the body can be made: {why}"
+                ));
+            })
+            .ok();
+        for (name, contact) in ["outer", "inner"].into_iter().zip(&contacts) {
+            if contact.resolution() < RESOLVED {
+                warnings.push(format!(
+                    "{name} contact: elements of {:.3} mm are too large for a wall of {:.3} mm and an edge {:.3} mm away; refine the mesh there",
+                    1e3 * contact.element_size,
+                    1e3 * contact.wall,
+                    1e3 * contact.edge_distance
+                ));
+            }
+            if contact.layers < LAYERS {
+                warnings.push(format!(
+                    "{name} contact: the wall, {:.3} mm, has one layer of elements; two are needed for efficiencies within 0.2 %",
+                    1e3 * contact.wall
+                ));
+            }
+            if contact.curvature_source == "flat" {
+                warnings.push(format!(
+                    "{name} contact: the curvature of the surface is not known; it is taken as flat"
+                ));
+            }
+        }
+        Ok(Self { fine, coarse, contacts, warnings })
+    }
+
+    /// Effective tip radius in m of a body with the tip radius `tip` at contact `k`.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if the tip does not fit into the surface.
+    pub(super) fn tip_radius(&self, k: usize, tip: f64) -> Result<f64> {
+        let curvatures = self.contacts[k].curvatures;
+        effective_radius(curvatures.map(|own| own + 1.0 / tip)).ok_or_else(|| {
+            let narrow = curvatures[0].min(curvatures[1]);
+            Error::Solver(format!(
+                "{} contact: the surface is hollow with a radius of {:.4} mm, in which a tip of {:.4} mm does not fit; \
+                 use a smaller tip or another place",
+                ["outer", "inner"][k],
+                -1e3 / narrow,
+                1e3 * tip
+            ))
+        })
+    }
+
+    /// The body's modes and residual flexibility for contact patches of the radii `patch` in m; and the same of the coarser mesh.
+    pub(super) fn modal(&self, body: &Body, patch: [f64; 2]) -> (ModalBody, Option<ModalBody>) {
+        let of = |solid: &StruckSolid| solid.modal_body(&body.material, patch, body.damping_ratio);
+        (of(&self.fine), self.coarse.as_ref().map(of))
+    }
+
+    /// What the user has to know of contact patches of the radii `patch` in m.
+    pub(super) fn patch_warnings(&self, patch: [f64; 2]) -> Vec<String> {
+        let mut found = Vec::new();
+        for ((name, contact), patch) in ["outer", "inner"].into_iter().zip(&self.contacts).zip(patch) {
+            if contact.edge_distance < FROM_EDGE * patch {
+                found.push(format!(
+                    "{name} contact: an edge of the face is {:.3} mm away, less than {FROM_EDGE} radii of the contact ({:.3} mm): Hertz's law assumes a face without edges",
+                    1e3 * contact.edge_distance,
+                    1e3 * patch
+                ));
+            }
+            if patch > OF_WALL * contact.wall {
+                found.push(format!(
+                    "{name} contact: its radius, {:.3} mm, is more than half of the wall, {:.3} mm: Hertz's distribution of the pressure is not accurate there",
+                    1e3 * patch,
+                    1e3 * contact.wall
+                ));
+            }
+        }
+        found
+    }
+}
+
+/// The body on the mesh at `path`, from the cache or computed.
+fn reduced(body: &Body, path: &std::path::Path, contacts: &[ContactInfo]) -> Result<StruckSolid> {
+    let content = std::fs::read(path).map_err(|e| Error::io("reading", path, e))?;
+    let points: Vec<_> = contacts.iter().map(ContactInfo::struck).collect();
+    let places: Vec<_> = points
+        .iter()
+        .map(|point| json!([<[f64; 3]>::from(point.at.point), <[f64; 3]>::from(point.at.normal), point.circles]))
+        .collect();
+    let inputs = json!({
+        "body": "struck solid", "revision": REVISION, "mesh": sha256_hex(&content), "points": places,
+        "poisson_ratio": body.material.poisson_ratio,
+    });
+    Cache::from_environment().get_or_build(&inputs, || {
+        let BodyMesh { mesh, fixed } = BodyMesh::read(path)?;
+        StruckSolid::new(&mesh, body.material.poisson_ratio, &fixed, &points)
+    })
+}
