@@ -132,6 +132,7 @@ fn main(py: Python, arguments: Vec<OsString>) -> u8 {
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     project::embed(FILES);
+    reference::mesh_bodies();
     let interpreter = module.py().import("sys")?.getattr("executable")?;
     if let Ok(interpreter) = interpreter.extract() {
         reference::prefer_python(interpreter);

@@ -4,11 +4,13 @@ use crate::kinds::general_impact::{GeneralImpact, Struck, Wall};
 use crate::kinds::{Feature, Form};
 use crate::scene::{Scene, Shape};
 
-pub(super) static FEATURES: [Feature; 7] = [
+pub(super) static FEATURES: [Feature; 9] = [
     Feature::new("wall", |s| has(s, |i| wall(i).is_some_and(|wall| wall.material.is_some()))).by(Form::Hertz),
     Feature::new("rigid wall", |s| has(s, |i| wall(i).is_some_and(|wall| wall.material.is_none())))
         .by(Form::Hertz),
-    Feature::new("two bodies without a plate", |s| has(s, |i| i.inner().is_some())).by(Form::Hertz),
+    Feature::new("two bodies without a plate", |s| has(s, |i| i.struck_inner().is_some())).by(Form::Hertz),
+    Feature::new("elastic body from a file", |s| has(s, |i| i.body().is_some_and(|body| !body.fixed.is_empty()))),
+    Feature::new("free elastic body from a file", |s| has(s, |i| i.body().is_some_and(|body| body.fixed.is_empty()))),
     Feature::new("no plate, compact body", |s| has(s, |i| matches!(i.outer.shape, Shape::Compact { .. }))),
     Feature::new("no plate, bender or stack", |s| has(s, |i| i.outer.shape.is_mounted())),
     Feature::new("no plate, yielding material", |s| has(s, super::yields)),
@@ -22,5 +24,5 @@ fn has(scene: &Scene, feature: fn(&GeneralImpact) -> bool) -> bool {
 }
 
 fn wall(impact: &GeneralImpact) -> Option<&Wall> {
-    if let Struck::Wall(wall) = &impact.struck { Some(wall) } else { None }
+    if let Some(Struck::Wall(wall)) = &impact.struck { Some(wall) } else { None }
 }

@@ -1,10 +1,11 @@
 //! Meshes of seal seats: files made by `fem_reference`, each with a description that says what it is a mesh of.
 
 use crate::body::cache::Cache;
+use super::mesh_with;
 use crate::interrupt::Scratch;
 use crate::kinds::seal_seat::SeatMesh;
 use crate::project::project_root;
-use crate::reference::{Progress, Resolution, child, identity, python};
+use crate::reference::{Progress, Resolution, identity, python};
 use crate::scene::Scene;
 use crate::scene::hash::sha256_hex;
 use crate::{Error, Result};
@@ -174,20 +175,9 @@ pub fn make_seat_mesh(
     }
     require_replaceable(out)?;
     let out = std::path::absolute(out).map_err(|e| Error::io("finding", out, e))?;
-    let folder = std::env::temp_dir();
-    let folder =
-        Scratch::new_in(&folder, "impactcheck-").map_err(|e| Error::io("writing into", &folder, e))?;
-    let input = folder.path().join("scene.json");
     let document = identity::solver_document(scene, resolution)?;
-    std::fs::write(&input, document.to_string()).map_err(|e| Error::io("writing", &input, e))?;
-    let mut command = python::fem_reference(python)?;
-    command.args(["mesh", "--resolution", resolution.first()]);
-    command.args(["--size-factor", &size_factor.to_string(), "--scene"]).arg(&input).arg("--out").arg(&out);
-    let ending = child::run(command, &mut |_| {})
-        .map_err(|e| Error::Solver(format!("{} can't be run: {e}", python.display())))?;
+    let options = ["--resolution", resolution.first()];
     let failed = |why: &str| Error::Solver(format!("meshing the seat of `{}`: {why}", scene.name));
-    if !ending.status.success() {
-        return Err(failed(ending.log.lines().last().unwrap_or("it failed without a message")));
-    }
+    mesh_with(python, &document, &options, size_factor, &out).map_err(|why| failed(&why.message))?;
     intact(&out).ok_or_else(|| failed("it wrote no mesh with its description"))
 }

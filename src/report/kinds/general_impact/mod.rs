@@ -1,4 +1,4 @@
-//! How an impact on a wall or another body is shown.
+//! How an impact on a wall, an elastic body or another body is shown.
 
 mod picture;
 
@@ -15,10 +15,11 @@ pub(super) struct Direct;
 
 impl Presentation for Direct {
     fn columns(&self) -> &'static [SummaryColumn] {
-        const COLUMNS: [SummaryColumn; 5] = [
+        const COLUMNS: [SummaryColumn; 6] = [
             SummaryColumn::new("efficiency", "", "efficiency", "efficiency"),
             SummaryColumn::new("restitution", "", "restitution", "outer_restitution"),
             SummaryColumn::new("peak force", "", "peak force", "outer_force_peak"),
+            SummaryColumn::new("inner peak force", "", "inner peak force", "inner_force_peak"),
             SummaryColumn::new("contact ends", "", "end of the contact", "outer_contact_end"),
             SummaryColumn::new("impulse", "", "impulse of the contact force", "outer_impulse"),
         ];
@@ -32,7 +33,7 @@ impl Presentation for Direct {
             PanelOf {
                 label: "Contact force in N",
                 factor: 1.0,
-                curves: &[("outer", "outer_force")],
+                curves: &[("outer", "outer_force"), ("inner", "inner_force")],
                 boxes: false,
             },
         ];
@@ -41,7 +42,7 @@ impl Presentation for Direct {
 
     fn curves_caption(&self) -> &'static str {
         "Displacement and velocity of the outer body and of the inner one, if there is one, signed along z (from the inner to the outer \
-         side), and the contact force, positive in compression."
+         side), and the contact forces, positive in compression."
     }
 
     fn scene_drawing(&self, report: &SceneReport) -> Markup {

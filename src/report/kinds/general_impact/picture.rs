@@ -1,8 +1,9 @@
-//! An impact on a wall or another body in section, to scale, and in numbers.
+//! An impact on a wall, an elastic body or another body in section, to scale but for an elastic body, and in numbers.
 
 use crate::format::measure;
 use crate::kinds::general_impact::{GeneralImpact, Struck};
 use crate::plot::svg::{Svg, Theme, x2};
+use crate::scene::Material;
 use crate::report::figure::scene_drawing::{DrawingScale, body, body_in_words, materials, shown_radius};
 use maud::{Markup, html};
 
@@ -20,7 +21,7 @@ const LARGEST: f64 = 20.0;
 
 pub(super) fn picture(scene: &GeneralImpact) -> Markup {
     let outer = &scene.outer;
-    let tips = [Some(&outer.shape), scene.inner().map(|inner| &inner.shape)];
+    let tips = [Some(&outer.shape), scene.inner.as_ref().map(|inner| &inner.shape)];
     let least = tips.iter().flatten().map(|shape| shape.tip_radius()).fold(f64::INFINITY, f64::min);
     let [above, below] = tips.map(|shape| shape.map_or(0.0, |shape| shown_radius(shape, LARGEST * least)));
     let half = above.max(below);
@@ -33,18 +34,17 @@ pub(super) fn picture(scene: &GeneralImpact) -> Markup {
         top: top + (ABOVE - MARGIN) / factor,
         margin: MARGIN,
     };
-    let is_wall = scene.inner().is_none();
-    let full = ABOVE + height * factor + BELOW + if is_wall { WALL } else { 0.0 };
+    // what lies between is not to scale: a strip
+    let strip = if scene.struck.is_some() { WALL } else { 0.0 };
+    let full = ABOVE + height * factor + BELOW + strip;
     let (axis, surface) = (scale.x(0.0), scale.z(top));
     let drawing = html! {
-        @match &scene.struck {
-            Struck::Wall(wall) => {
-                rect.fig-body.plate x=(x2(MARGIN)) width=(x2(WIDTH - 2.0 * MARGIN)) y=(x2(scale.z(0.0))) height=(x2(WALL)) {}
-                text x=(x2(axis)) y=(x2(scale.z(0.0) + 0.5 * WALL + 4.5)) text-anchor="middle" {
-                    (if wall.material.is_some() { "wall" } else { "rigid wall" })
-                }
-            }
-            Struck::Inner(inner) => (body(&inner.shape, "inner", below, [0.0, -below], -1.0, &scale)),
+        @if let Some(struck) = &scene.struck {
+            rect.fig-body.plate x=(x2(MARGIN)) width=(x2(WIDTH - 2.0 * MARGIN)) y=(x2(scale.z(0.0))) height=(x2(WALL)) {}
+            text x=(x2(axis)) y=(x2(scale.z(0.0) + 0.5 * WALL + 4.5)) text-anchor="middle" { (name_of(struck)) }
+        }
+        @if let Some(inner) = &scene.inner {
+            (body(&inner.shape, "inner", below, [0.0, -below - strip / factor], -1.0, &scale))
         }
         (body(&outer.shape, "outer", above, [0.0, above], 1.0, &scale))
         path.fig-frame d=(format!("M{0} {1}V{2}m-4-7l4 7l4-7", x2(axis), x2(surface - 34.0), x2(surface - 6.0))) {}
@@ -60,18 +60,32 @@ pub(super) fn measures(scene: &GeneralImpact) -> Vec<(String, String)> {
     let aslant =
         if outer.angle == 0.0 { String::new() } else { format!(", at {}", measure(outer.angle, "rad")) };
     let moving = |speed: f64| format!(", {}", measure(speed, "m/s"));
-    let struck = match &scene.struck {
-        Struck::Wall(wall) => {
-            let of = wall.material.as_ref().map_or("rigid", |material| &material.name);
-            ("wall".to_owned(), of.to_owned())
+    let material = |material: Option<&Material>| material.map_or("rigid", |material| &material.name).to_owned();
+    let struck = scene.struck.as_ref().map(|struck| match struck {
+        Struck::Wall(wall) => ("wall".to_owned(), material(wall.material.as_ref())),
+        Struck::Body(body) => {
+            let held = if body.fixed.is_empty() { ", free" } else { "" };
+            ("body".to_owned(), format!("{}, {}{held}", name_of(struck), material(Some(&body.material))))
         }
-        Struck::Inner(inner) => {
-            let own = if inner.speed == 0.0 { String::new() } else { moving(inner.speed) };
-            ("inner".to_owned(), body_in_words(&inner.shape, &inner.material) + &own)
-        }
-    };
+    });
+    let inner = scene.inner.as_ref().map(|inner| {
+        let own = if inner.speed == 0.0 { String::new() } else { moving(inner.speed) };
+        ("inner".to_owned(), body_in_words(&inner.shape, &inner.material) + &own)
+    });
     let outer = body_in_words(&outer.shape, &outer.material) + &moving(outer.speed) + &aslant;
-    let mut found = vec![("outer".to_owned(), outer), struck];
+    let mut found = vec![("outer".to_owned(), outer)];
+    found.extend(struck.into_iter().chain(inner));
     found.extend(materials(scene.materials()));
     found
+}
+
+/// What the outer body strikes, in words.
+fn name_of(struck: &Struck) -> String {
+    match struck {
+        Struck::Wall(wall) => if wall.material.is_some() { "wall" } else { "rigid wall" }.to_owned(),
+        Struck::Body(body) => {
+            let name = body.file.file_name().unwrap_or(body.file.as_os_str());
+            name.to_string_lossy().into_owned()
+        }
+    }
 }

@@ -1,0 +1,79 @@
+//! Meshes of bodies whose shape is in a file, in the cache of meshes.
+
+use super::{Refused, mesh_with, run};
+use crate::body::cache::Cache;
+use crate::interrupt::Scratch;
+use crate::kinds::general_impact::{MeshRequest, set_mesher};
+use crate::reference::python;
+use crate::scene::hash::sha256_hex;
+use crate::{Error, Result};
+use serde::Deserialize;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// From now on models of bodies from files make their meshes, as a program that runs them has to say at its start.
+pub fn mesh_bodies() {
+    set_mesher(body_mesh);
+}
+
+/// What a mesh's description says of its file.
+#[derive(Deserialize)]
+struct Description {
+    sha256: String,
+}
+
+/// The mesh that `request` wants: the one in the cache, or one that `fem_reference` makes now and that stays there.
+///
+/// # Errors
+/// [`Error::Scene`] if the body or its contacts are at fault, [`Error::Solver`] if meshing fails, [`Error::Io`] if the cache can't be written.
+pub fn body_mesh(request: &MeshRequest) -> Result<PathBuf> {
+    let folder = Cache::from_environment().folder().map_or_else(|| std::env::temp_dir().join("impactcheck"), Path::to_path_buf);
+    let folder = folder.join("meshes");
+    let path = folder.join(format!("{}.vtu", request.key));
+    if is_intact(&path) {
+        return Ok(path);
+    }
+    let writing = |e| Error::io("writing", &path, e);
+    std::fs::create_dir_all(&folder).map_err(writing)?;
+    // other processes may make the same mesh at the same time
+    let own = Scratch::new_in(&folder, ".making-").map_err(writing)?;
+    let made = own.path().join("mesh.vtu");
+    mesh_with(&python::python()?, &request.document, &[], request.factor, &made).map_err(refused)?;
+    if !is_intact(&made) {
+        return Err(Error::Solver("the mesher wrote no mesh with its description".into()));
+    }
+    for extension in ["json", "vtu"] {
+        std::fs::rename(made.with_extension(extension), path.with_extension(extension)).map_err(writing)?;
+    }
+    Ok(path)
+}
+
+/// The groups, sets and faces of a file with its bounding box, as `fem_reference` lists them; `unit` is its unit of length.
+///
+/// # Errors
+/// As [`body_mesh`].
+pub fn body_groups(file: &Path, unit: Option<&str>) -> Result<Value> {
+    let python = python::python()?;
+    let mut command = python::fem_reference(&python)?;
+    command.arg("groups").arg(file);
+    command.args(unit.into_iter().flat_map(|unit| ["--unit", unit]));
+    let ending = run(command, &python).map_err(refused)?;
+    let text = ending.stray.unwrap_or_default();
+    serde_json::from_str(&text).map_err(|e| Error::Internal(format!("the list of groups: {e}")))
+}
+
+/// A fault of the scene as the scene's, any other as the mesher's.
+fn refused(why: Refused) -> Error {
+    match why.is_of_scene {
+        true => Error::Scene(miette::miette!("{}", why.message)),
+        false => Error::Solver(why.message),
+    }
+}
+
+/// Whether the mesh file at `path` and its description are there and belong together.
+fn is_intact(path: &Path) -> bool {
+    let described = std::fs::read_to_string(path.with_extension("json")).ok();
+    let described = described.and_then(|text| serde_json::from_str::<Description>(&text).ok());
+    let found = std::fs::read(path).ok().map(|bytes| sha256_hex(&bytes));
+    described.zip(found).is_some_and(|(described, found)| described.sha256 == found)
+}
