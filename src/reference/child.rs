@@ -51,9 +51,9 @@ pub(super) struct SolverExit {
 ///
 /// # Errors
 /// What the system says if the program can't be started or waited for.
-pub(super) fn run(mut command: Command, progress: &mut dyn FnMut(&Progress)) -> std::io::Result<SolverExit> {
+pub(super) fn run(command: &mut Command, progress: &mut dyn FnMut(&Progress)) -> std::io::Result<SolverExit> {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = Running::start(&mut command)?;
+    let mut child = Running::start(command)?;
     let log = child.child().stderr.take().map(|stderr| std::thread::spawn(move || tail(stderr)));
     let (error, stray) = match child.child().stdout.take() {
         Some(stdout) => listen(stdout, progress)?,

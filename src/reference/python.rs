@@ -1,4 +1,4 @@
-//! Finds the Python that has FEniCSx.
+//! Finds the Python that has FEniCSx, or what meshes of bodies need.
 
 use crate::project::project_root;
 use crate::{Error, Result};
@@ -17,6 +17,33 @@ const INSTALL: &str = if cfg!(all(target_os = "linux", target_arch = "x86_64")) 
 } else {
     "there are wheels of FEniCSx for Linux on x86-64 only: use the container (`docker build --platform linux/amd64 .`) or conda-forge's fenics-dolfinx"
 };
+
+/// What a Python is to be used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Purpose {
+    /// Finite-element references.
+    References,
+    /// Meshes of bodies from files alone, which need no FEniCSx.
+    Meshes,
+}
+
+impl Purpose {
+    /// Whether it needs the module called `name`.
+    fn needs(self, name: &str) -> bool {
+        self == Purpose::References || ["python", "gmsh", "meshio"].contains(&name)
+    }
+
+    /// What is needed, and how it is installed.
+    fn in_words(self) -> [&'static str; 2] {
+        match self {
+            Purpose::References => ["the reference needs a Python that imports dolfinx, gmsh and meshio", INSTALL],
+            Purpose::Meshes => [
+                "the mesh of a body needs a Python that imports gmsh and meshio",
+                "install them with `pip install gmsh meshio scipy`",
+            ],
+        }
+    }
+}
 
 /// The environment that `make setup` makes in a checkout.
 const OWN_ENVIRONMENT: &str = "target/python-tools/bin/python";
@@ -62,10 +89,14 @@ impl Interpreter {
 
     /// Why it can't compute a reference; `None` if it should.
     pub(super) fn fault(&self) -> Option<String> {
-        let missing = self.modules.iter().filter(|(_, version)| version.is_none());
+        self.fault_for(Purpose::References)
+    }
+
+    fn fault_for(&self, purpose: Purpose) -> Option<String> {
+        let missing = self.modules.iter().filter(|(name, version)| version.is_none() && purpose.needs(name));
         let missing: Vec<&str> = missing.map(|(name, _)| name.as_str()).collect();
         let missing = (!missing.is_empty()).then(|| format!("it has no {}", missing.join(", ")));
-        self.refused.clone().or(missing)
+        self.refused.clone().filter(|_| purpose == Purpose::References).or(missing)
     }
 }
 
@@ -84,22 +115,35 @@ pub fn prefer_python(interpreter: PathBuf) {
 /// # Errors
 /// [`Error::Solver`] if there is none; it says where was looked and what was missing. As [`project_root`].
 pub fn python() -> Result<PathBuf> {
-    let root = project_root()?;
-    find(&candidates(named(), &root, &std::env::var_os("PATH").unwrap_or_default()))
+    found_for(Purpose::References)
 }
 
-fn find(candidates: &[PythonCandidate]) -> Result<PathBuf> {
+/// The Python that meshes bodies from files, as [`python`]; it needs no FEniCSx.
+///
+/// # Errors
+/// As [`python`].
+pub(super) fn mesher() -> Result<PathBuf> {
+    found_for(Purpose::Meshes)
+}
+
+fn found_for(purpose: Purpose) -> Result<PathBuf> {
+    let root = project_root()?;
+    find(purpose, &candidates(named(), &root, &std::env::var_os("PATH").unwrap_or_default()))
+}
+
+fn find(purpose: Purpose, candidates: &[PythonCandidate]) -> Result<PathBuf> {
     let mut faults = Vec::new();
     for candidate in candidates {
-        match Interpreter::probe(candidate).map(|interpreter| interpreter.fault()) {
+        match Interpreter::probe(candidate).map(|interpreter| interpreter.fault_for(purpose)) {
             Ok(None) => return Ok(candidate.path.clone()),
             Ok(Some(fault)) | Err(fault) => faults.push(format!("{}: {fault}", candidate.path.display())),
         }
     }
     let faults = if faults.is_empty() { "no python3 was found".to_owned() } else { faults.join("; ") };
-    let message = format!("the reference needs a Python that imports dolfinx, gmsh and meshio; {faults}");
+    let [needed, install] = purpose.in_words();
+    let message = format!("{needed}; {faults}");
     let other = format!("to use another interpreter, name it in {PYTHON_VARIABLE}");
-    Err(Error::Solver(message).hint([INSTALL.to_owned(), other]))
+    Err(Error::Solver(message).hint([install.to_owned(), other]))
 }
 
 /// All interpreters that [`python`] looks at, in its order, each with its reason if it does not run.
@@ -182,7 +226,7 @@ mod tests {
     fn an_interpreter_without_dolfinx_is_named_with_what_installs_it() {
         let folder = tempfile::tempdir().expect("folder");
         let bare = fake(folder.path(), "bare", BARE, 0);
-        let error = find(&named(bare.clone())).expect_err("incomplete");
+        let error = find(Purpose::References, &named(bare.clone())).expect_err("incomplete");
         assert_eq!(error.exit_status(), crate::ExitStatus::Solver);
         let said = format!("{error} {}", error.hints().join(" "));
         let bare = bare.to_string_lossy();
@@ -191,12 +235,21 @@ mod tests {
         }
     }
 
+    /// Meshes of bodies need gmsh, not FEniCSx, whatever its release.
+    #[test]
+    fn a_mesher_needs_no_dolfinx() {
+        let folder = tempfile::tempdir().expect("folder");
+        let with = |answer: &str| find(Purpose::Meshes, &named(fake(folder.path(), "some", answer, 0)));
+        assert!(with(r#"{"python": "3.13.0", "dolfinx": null, "gmsh": "4.15", "meshio": "5.3"}"#).is_ok());
+        assert!(with(BARE).expect_err("incomplete").to_string().contains("has no meshio"));
+    }
+
     #[test]
     fn a_named_interpreter_that_does_not_run_is_not_replaced_by_another() {
         let folder = tempfile::tempdir().expect("folder");
         let broken = fake(folder.path(), "broken", "Segmentation fault", 139);
         for (path, word) in [(folder.path().join("none"), "can't be run"), (broken, "no working Python")] {
-            let said = find(&named(path)).expect_err("unusable").to_string();
+            let said = find(Purpose::References, &named(path)).expect_err("unusable").to_string();
             assert!(said.contains(word), "{said}");
         }
     }
@@ -217,14 +270,14 @@ mod tests {
             found.iter().map(|c| &c.path).filter(|p| !p.starts_with("/usr/bin")).collect();
         assert_eq!(apart, [&own, &first.path().join("python3"), &complete]);
         assert_eq!(found[0].origin, "made by `make setup`");
-        assert_eq!(find(&found).expect("complete"), complete);
+        assert_eq!(find(Purpose::References, &found).expect("complete"), complete);
     }
 
     /// All modules are there, yet the solver would end in a traceback.
     #[test]
     fn an_unsupported_release_is_refused_with_its_reason() {
         let folder = tempfile::tempdir().expect("folder");
-        let error = find(&named(fake(folder.path(), "new", TOO_NEW, 0))).expect_err("too new");
+        let error = find(Purpose::References, &named(fake(folder.path(), "new", TOO_NEW, 0))).expect_err("too new");
         assert_eq!(error.exit_status(), crate::ExitStatus::Solver);
         assert!(error.to_string().contains("dolfinx 0.12.0 is not supported"), "{error}");
     }

@@ -109,7 +109,7 @@ pub fn solve_with(
     if solid {
         command.args(["--np", &wish.processes.max(1).to_string()]);
     }
-    let ending = child::run(command, progress)
+    let ending = child::run(&mut command, progress)
         .map_err(|e| Error::Solver(format!("{} can't be run: {e}", python.display())))?;
     if !ending.status.success() {
         return Err(failure(&ending));

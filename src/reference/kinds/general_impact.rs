@@ -38,7 +38,7 @@ pub fn body_mesh(request: &MeshRequest) -> Result<PathBuf> {
     // other processes may make the same mesh at the same time
     let own = Scratch::new_in(&folder, ".making-").map_err(writing)?;
     let made = own.path().join("mesh.vtu");
-    mesh_with(&python::python()?, &request.document, &[], request.factor, &made).map_err(refused)?;
+    mesh_with(&python::mesher()?, &request.document, &[], request.factor, &made).map_err(refused)?;
     if !is_intact(&made) {
         return Err(Error::Solver("the mesher wrote no mesh with its description".into()));
     }
@@ -53,12 +53,15 @@ pub fn body_mesh(request: &MeshRequest) -> Result<PathBuf> {
 /// # Errors
 /// As [`body_mesh`].
 pub fn body_groups(file: &Path, unit: Option<&str>) -> Result<Value> {
-    let python = python::python()?;
+    let python = python::mesher()?;
     let mut command = python::fem_reference(&python)?;
     command.arg("groups").arg(file);
     command.args(unit.into_iter().flat_map(|unit| ["--unit", unit]));
-    let ending = run(command, &python).map_err(refused)?;
-    let text = ending.stray.unwrap_or_default();
+    let folder = std::env::temp_dir();
+    let folder = Scratch::new_in(&folder, "impactcheck-").map_err(|e| Error::io("writing into", &folder, e))?;
+    let list = folder.path().join("groups.json");
+    run(command.arg("--out").arg(&list), &python).map_err(refused)?;
+    let text = std::fs::read_to_string(&list).map_err(|e| Error::io("reading", &list, e))?;
     serde_json::from_str(&text).map_err(|e| Error::Internal(format!("the list of groups: {e}")))
 }
 

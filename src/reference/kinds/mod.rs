@@ -44,15 +44,15 @@ fn mesh_with(
     let mut command = python::fem_reference(python).map_err(|e| e.to_string())?;
     command.arg("mesh").args(options).args(["--size-factor", &size_factor.to_string(), "--scene"]);
     command.arg(&input).arg("--out").arg(out);
-    run(command, python).map(|_| ())
+    run(&mut command, python)
 }
 
 /// Runs a command of `fem_reference` to its end.
-fn run(command: std::process::Command, python: &Path) -> std::result::Result<child::SolverExit, Refused> {
+fn run(command: &mut std::process::Command, python: &Path) -> std::result::Result<(), Refused> {
     let ending = child::run(command, &mut |_| {})
         .map_err(|e| format!("{} can't be run: {e}", python.display()))?;
     if ending.status.success() {
-        return Ok(ending);
+        return Ok(());
     }
     let last = ending.log.lines().last().unwrap_or("it failed without a message").to_owned();
     let last = ending.error.unwrap_or(last);
