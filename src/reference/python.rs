@@ -36,7 +36,9 @@ impl Purpose {
     /// What is needed, and how it is installed.
     fn in_words(self) -> [&'static str; 2] {
         match self {
-            Purpose::References => ["the reference needs a Python that imports dolfinx, gmsh and meshio", INSTALL],
+            Purpose::References => {
+                ["the reference needs a Python that imports dolfinx, gmsh and meshio", INSTALL]
+            }
             Purpose::Meshes => [
                 "the mesh of a body needs a Python that imports gmsh and meshio",
                 "install them with `pip install gmsh meshio scipy`",
@@ -277,7 +279,8 @@ mod tests {
     #[test]
     fn an_unsupported_release_is_refused_with_its_reason() {
         let folder = tempfile::tempdir().expect("folder");
-        let error = find(Purpose::References, &named(fake(folder.path(), "new", TOO_NEW, 0))).expect_err("too new");
+        let error =
+            find(Purpose::References, &named(fake(folder.path(), "new", TOO_NEW, 0))).expect_err("too new");
         assert_eq!(error.exit_status(), crate::ExitStatus::Solver);
         assert!(error.to_string().contains("dolfinx 0.12.0 is not supported"), "{error}");
     }

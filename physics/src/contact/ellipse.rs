@@ -77,7 +77,8 @@ mod tests {
                 let width = (m * m + n * c) / n;
                 // integral of sqrt(width - n t^2) with t = s + m/n
                 let from = m / n.sqrt() / width.sqrt();
-                0.5 * width / n.sqrt() * (FRAC_PI_2 - from.asin() - from * (1.0 - from * from).max(0.0).sqrt())
+                0.5 * width / n.sqrt()
+                    * (FRAC_PI_2 - from.asin() - from * (1.0 - from * from).max(0.0).sqrt())
             })
             .sum();
         sum * 2.0 / f64::from(turns)
@@ -88,7 +89,8 @@ mod tests {
     fn force_and_approach_are_those_of_boussinesqs_integrals() {
         for axes in [[1.0, 1.0], [1.0, 0.8], [1.0, 0.4], [1.0, 0.15]] {
             let centre = displacement(axes, [0.0; 2]);
-            let curvature = |at: [f64; 2], distance: f64| 2.0 * (centre - displacement(axes, at)) / distance.powi(2);
+            let curvature =
+                |at: [f64; 2], distance: f64| 2.0 * (centre - displacement(axes, at)) / distance.powi(2);
             let [x, y] = [0.5 * axes[0], 0.5 * axes[1]];
             let curvatures = [curvature([x, 0.0], x), curvature([0.0, y], y)];
             let force = 2.0 / 3.0 * std::f64::consts::PI * axes[0] * axes[1];

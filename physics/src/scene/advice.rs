@@ -37,11 +37,14 @@ pub(super) fn needed(kind: &Kind, path: &str) -> (&'static str, String) {
         ),
         Kind::Place => (
             "a name or three coordinates",
-            "write the name of a point, set or face, or a place like [\"1 mm\", \"0 mm\", \"12 mm\"]".to_owned(),
+            "write the name of a point, set or face, or a place like [\"1 mm\", \"0 mm\", \"12 mm\"]"
+                .to_owned(),
         ),
         Kind::Places(most) => (
             "a list of names or places",
-            format!("write a list of at most {most} names or places like [\"base\", [\"33 mm\", \"0 mm\", \"1 mm\"]]"),
+            format!(
+                "write a list of at most {most} names or places like [\"base\", [\"33 mm\", \"0 mm\", \"1 mm\"]]"
+            ),
         ),
         Kind::Tables(..) => ("a list of tables", "write a list like [{ key = value }]".to_owned()),
         Kind::Flag => ("true or false", "write true or false, without quotes".to_owned()),

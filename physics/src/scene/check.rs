@@ -152,7 +152,9 @@ impl<'a> Checker<'a> {
             }
             (Kind::Place, _) => self.place(place, value),
             (Kind::Places(most), DeValue::Array(items)) if items.len() <= *most => {
-                let places = items.iter().map(|item| Some(Values::from([(PLACE.to_owned(), self.place(place, item)?)])));
+                let places = items
+                    .iter()
+                    .map(|item| Some(Values::from([(PLACE.to_owned(), self.place(place, item)?)])));
                 Some(Checked::Tables(places.collect::<Option<_>>()?))
             }
             (Kind::Texts(most), DeValue::Array(items)) => self.texts(place, value, items, *most),

@@ -9,8 +9,12 @@ pub(super) static FEATURES: [Feature; 9] = [
     Feature::new("rigid wall", |s| has(s, |i| wall(i).is_some_and(|wall| wall.material.is_none())))
         .by(Form::Hertz),
     Feature::new("two bodies without a plate", |s| has(s, |i| i.struck_inner().is_some())).by(Form::Hertz),
-    Feature::new("elastic body from a file", |s| has(s, |i| i.body().is_some_and(|body| !body.fixed.is_empty()))),
-    Feature::new("free elastic body from a file", |s| has(s, |i| i.body().is_some_and(|body| body.fixed.is_empty()))),
+    Feature::new("elastic body from a file", |s| {
+        has(s, |i| i.body().is_some_and(|body| !body.fixed.is_empty()))
+    }),
+    Feature::new("free elastic body from a file", |s| {
+        has(s, |i| i.body().is_some_and(|body| body.fixed.is_empty()))
+    }),
     Feature::new("no plate, compact body", |s| has(s, |i| matches!(i.outer.shape, Shape::Compact { .. }))),
     Feature::new("no plate, bender or stack", |s| has(s, |i| i.outer.shape.is_mounted())),
     Feature::new("no plate, yielding material", |s| has(s, super::yields)),

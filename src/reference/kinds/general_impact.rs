@@ -27,7 +27,9 @@ struct Description {
 /// # Errors
 /// [`Error::Scene`] if the body or its contacts are at fault, [`Error::Solver`] if meshing fails, [`Error::Io`] if the cache can't be written.
 pub fn body_mesh(request: &MeshRequest) -> Result<PathBuf> {
-    let folder = Cache::from_environment().folder().map_or_else(|| std::env::temp_dir().join("impactcheck"), Path::to_path_buf);
+    let folder = Cache::from_environment()
+        .folder()
+        .map_or_else(|| std::env::temp_dir().join("impactcheck"), Path::to_path_buf);
     let folder = folder.join("meshes");
     let path = folder.join(format!("{}.vtu", request.key));
     if is_intact(&path) {
@@ -58,7 +60,8 @@ pub fn body_groups(file: &Path, unit: Option<&str>) -> Result<Value> {
     command.arg("groups").arg(file);
     command.args(unit.into_iter().flat_map(|unit| ["--unit", unit]));
     let folder = std::env::temp_dir();
-    let folder = Scratch::new_in(&folder, "impactcheck-").map_err(|e| Error::io("writing into", &folder, e))?;
+    let folder =
+        Scratch::new_in(&folder, "impactcheck-").map_err(|e| Error::io("writing into", &folder, e))?;
     let list = folder.path().join("groups.json");
     run(command.arg("--out").arg(&list), &python).map_err(refused)?;
     let text = std::fs::read_to_string(&list).map_err(|e| Error::io("reading", &list, e))?;

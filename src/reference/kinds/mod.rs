@@ -49,8 +49,8 @@ fn mesh_with(
 
 /// Runs a command of `fem_reference` to its end.
 fn run(command: &mut std::process::Command, python: &Path) -> std::result::Result<(), Refused> {
-    let ending = child::run(command, &mut |_| {})
-        .map_err(|e| format!("{} can't be run: {e}", python.display()))?;
+    let ending =
+        child::run(command, &mut |_| {}).map_err(|e| format!("{} can't be run: {e}", python.display()))?;
     if ending.status.success() {
         return Ok(());
     }

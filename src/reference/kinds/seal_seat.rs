@@ -1,7 +1,7 @@
 //! Meshes of seal seats: files made by `fem_reference`, each with a description that says what it is a mesh of.
 
-use crate::body::cache::Cache;
 use super::mesh_with;
+use crate::body::cache::Cache;
 use crate::interrupt::Scratch;
 use crate::kinds::seal_seat::SeatMesh;
 use crate::project::project_root;

@@ -31,7 +31,8 @@ impl Line {
             1 => x[m] * x[m],
             _ => x[m].powf(MESH_POWER),
         });
-        let found = matrix.lu().solve(&Vector3::from(values)).unwrap_or_else(|| Vector3::new(values[1], 0.0, 0.0));
+        let found =
+            matrix.lu().solve(&Vector3::from(values)).unwrap_or_else(|| Vector3::new(values[1], 0.0, 0.0));
         Self { value: found[0], slope: found[1] / (radii[1] * radii[1]) }
     }
 
@@ -40,8 +41,9 @@ impl Line {
         let x = radii.map(|radius| radius * radius);
         let mean = |values: [f64; 3]| values.iter().sum::<f64>() / 3.0;
         let (x0, y0) = (mean(x), mean(values));
-        let [above, below] =
-            [0, 1].map(|k| (0..3).map(|m| (x[m] - x0) * if k == 0 { values[m] - y0 } else { x[m] - x0 }).sum::<f64>());
+        let [above, below] = [0, 1].map(|k| {
+            (0..3).map(|m| (x[m] - x0) * if k == 0 { values[m] - y0 } else { x[m] - x0 }).sum::<f64>()
+        });
         let slope = if below > 0.0 { above / below } else { 0.0 };
         Self { value: y0 - slope * x0, slope }
     }
@@ -68,7 +70,8 @@ impl StruckSolid {
         };
         let rigid = body.rigid.iter().map(|motion| [sides[0] * motion[0], sides[1] * motion[1]]);
         let participation: Vec<[f64; 2]> = rigid.chain(body.participation.iter().map(at_patch)).collect();
-        let omega: Vec<f64> = std::iter::repeat_n(0.0, body.rigid.len()).chain(body.omega.iter().copied()).collect();
+        let omega: Vec<f64> =
+            std::iter::repeat_n(0.0, body.rigid.len()).chain(body.omega.iter().copied()).collect();
         let of_modes = |i: usize, j: usize| -> f64 {
             let elastic = omega.iter().zip(&participation).filter(|(omega, _)| **omega > 0.0);
             elastic.map(|(omega, phi)| phi[i] * phi[j] / (omega * omega)).sum()
@@ -86,7 +89,8 @@ impl StruckSolid {
         if is_struck == [true; 2] {
             // the same circle of the one against all of the other, and the other way round
             let first = Line::near(std::array::from_fn(|m| mean(body.mutual[m])), self.circles[0]);
-            let second = Line::near(std::array::from_fn(|n| mean(body.mutual.map(|row| row[n]))), self.circles[1]);
+            let second =
+                Line::near(std::array::from_fn(|n| mean(body.mutual.map(|row| row[n]))), self.circles[1]);
             let middle = mean(body.mutual.map(mean));
             let value = first.value + second.value - middle;
             flexibility.mutual[0][0] = -value - of_modes(0, 1);

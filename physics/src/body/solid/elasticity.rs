@@ -149,8 +149,7 @@ impl Lame {
                 let trace = weight * self.mu * ga.dot(gb);
                 for c in 0..3 {
                     for d in 0..3 {
-                        block[3 * c + d] +=
-                            weight * (self.lambda * ga[c] * gb[d] + self.mu * ga[d] * gb[c]);
+                        block[3 * c + d] += weight * (self.lambda * ga[c] * gb[d] + self.mu * ga[d] * gb[c]);
                     }
                     block[4 * c] += trace;
                 }

@@ -79,7 +79,8 @@ impl TetMesh {
     /// Volume in m^3.
     pub fn volume(&self) -> f64 {
         let of = |cell: &[usize]| {
-            self.bent_places(cell).map_or_else(|| volume(&self.corners(cell)), |places| curved::volume(&places))
+            self.bent_places(cell)
+                .map_or_else(|| volume(&self.corners(cell)), |places| curved::volume(&places))
         };
         self.cells().map(of).sum()
     }
@@ -139,7 +140,9 @@ impl TetMesh {
 
     fn check(&self) -> std::result::Result<(), String> {
         self.check_cells(|_, cell| match self.first_bent(cell) {
-            Some(node) => Err(format!("node {node} is not in the middle of its edge: edges must be straight")),
+            Some(node) => {
+                Err(format!("node {node} is not in the middle of its edge: edges must be straight"))
+            }
             None => Ok(()),
         })
     }

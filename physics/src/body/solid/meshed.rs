@@ -78,8 +78,8 @@ impl BodyMesh {
     pub fn contacts(path: &Path) -> Result<Vec<ContactInfo>> {
         let path = path.with_extension("json");
         let text = std::fs::read_to_string(&path).map_err(|e| Error::io("reading", &path, e))?;
-        let info: BodyMeshInfo =
-            serde_json::from_str(&text).map_err(|e| unusable(&path, &format!("is no description of a mesh: {e}")))?;
+        let info: BodyMeshInfo = serde_json::from_str(&text)
+            .map_err(|e| unusable(&path, &format!("is no description of a mesh: {e}")))?;
         Ok([Some(info.contacts.outer), info.contacts.inner].into_iter().flatten().collect())
     }
 }

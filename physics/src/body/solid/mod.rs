@@ -18,7 +18,7 @@ mod surface;
 pub use mesh::TetMesh;
 pub use meshed::{BodyMesh, ContactInfo};
 pub use pressure::SurfacePoint;
-pub use struck::{CIRCLES, StruckSolid, StruckPoint};
+pub use struck::{CIRCLES, StruckPoint, StruckSolid};
 pub use surface::Surface;
 
 use super::continuum::lanczos::{ShiftInvert, lowest_modes};

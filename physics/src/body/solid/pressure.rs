@@ -53,7 +53,8 @@ impl Face {
         };
         // from the nearest on, what shares nodes: a step of the surface facing likewise is not joined
         triangles.sort_by(|(_, a), (_, b)| nearest(a).total_cmp(&nearest(b)));
-        let mut joined: HashSet<usize> = triangles.first().into_iter().flat_map(|(nodes, _)| *nodes).collect();
+        let mut joined: HashSet<usize> =
+            triangles.first().into_iter().flat_map(|(nodes, _)| *nodes).collect();
         loop {
             let before = joined.len();
             for (nodes, _) in &triangles {
@@ -77,8 +78,7 @@ impl Face {
                 .map(|(a, b)| (places[a] - places[b]).norm())
                 .into_iter()
                 .fold(0.0, f64::max);
-            let nearest =
-                places.iter().map(|place| self.across(*place)).fold(f64::INFINITY, f64::min);
+            let nearest = places.iter().map(|place| self.across(*place)).fold(f64::INFINITY, f64::min);
             if nearest > radius + edge {
                 continue;
             }

@@ -12,8 +12,8 @@ use crate::error::{Error, Result};
 use crate::numerics::eigenmodes::symmetric;
 use crate::numerics::vectors::{axpy, dot};
 use crate::scene::Material;
-use faer::sparse::SparseColMat;
 use faer::Mat;
+use faer::sparse::SparseColMat;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -128,7 +128,9 @@ impl StruckSolid {
         body.participation = shapes
             .iter()
             .map(|shape| {
-                let of = |k: usize| std::array::from_fn(|m| if k < points.len() { seen(k, m, shape) } else { 0.0 });
+                let of = |k: usize| {
+                    std::array::from_fn(|m| if k < points.len() { seen(k, m, shape) } else { 0.0 })
+                };
                 [of(0), of(1)]
             })
             .collect();
@@ -277,7 +279,8 @@ impl Statics {
             }
             block = next;
         }
-        let forces: Vec<Vec<f64>> = basis.iter().map(|vector| symmetric_times(&self.stiffness, vector)).collect();
+        let forces: Vec<Vec<f64>> =
+            basis.iter().map(|vector| symmetric_times(&self.stiffness, vector)).collect();
         let count = basis.len();
         let stiffness = Mat::from_fn(count, count, |i, j| {
             0.5 * (dot(&basis[i], &forces[j]) + dot(&basis[j], &forces[i]))

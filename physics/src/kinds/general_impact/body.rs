@@ -55,10 +55,13 @@ impl Body {
     /// The body that the checked table `body` describes, struck at the places `at`.
     pub(super) fn read(body: &Node, material: Material, at: [Option<Place>; 2]) -> Result<Self> {
         let unit = match body.0.get("unit") {
-            Some(Checked::Text(unit)) => Some(UNITS.iter().find(|(name, _)| name == unit).map_or(1.0, |u| u.1)),
+            Some(Checked::Text(unit)) => {
+                Some(UNITS.iter().find(|(name, _)| name == unit).map_or(1.0, |u| u.1))
+            }
             _ => None,
         };
-        let fixed = body.tables("fixed")?.iter().map(|entry| place(entry, PLACE)).collect::<Result<Vec<_>>>()?;
+        let fixed =
+            body.tables("fixed")?.iter().map(|entry| place(entry, PLACE)).collect::<Result<Vec<_>>>()?;
         Ok(Self {
             file: body.text("file")?.into(),
             content: body.text(CONTENT)?.to_owned(),
@@ -131,7 +134,8 @@ pub(super) fn place(node: &Node, key: &str) -> Result<Option<Place>> {
     Ok(match node.0.get(key) {
         Some(Checked::Text(name)) => Some(Place::Name(name.clone())),
         Some(Checked::Numbers(at)) => {
-            let at = <[f64; 3]>::try_from(&at[..]).map_err(|_| Error::Internal(format!("`{key}` is no place")))?;
+            let at =
+                <[f64; 3]>::try_from(&at[..]).map_err(|_| Error::Internal(format!("`{key}` is no place")))?;
             Some(Place::Point(at))
         }
         _ => None,

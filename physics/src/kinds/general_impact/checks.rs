@@ -81,8 +81,10 @@ fn energy_between(setup: &GeneralImpact, summary: &Summary) -> Option<Statement>
     let energy = |mass: f64, speed: f64| 0.5 * mass * speed * speed;
     let mass = setup.outer.shape.mass(&setup.outer.material);
     let inner = setup.inner.as_ref().zip(setup.inner_mass());
-    let before = energy(mass, setup.outer.normal_speed()) + inner.map_or(0.0, |(inner, mass)| energy(mass, inner.speed));
-    let moving = inner.map_or(Some(0.0), |(_, mass)| Some(energy(mass, summary.value("inner_velocity_final")?)))?;
+    let before = energy(mass, setup.outer.normal_speed())
+        + inner.map_or(0.0, |(inner, mass)| energy(mass, inner.speed));
+    let moving =
+        inner.map_or(Some(0.0), |(_, mass)| Some(energy(mass, summary.value("inner_velocity_final")?)))?;
     let after = energy(mass, summary.value("outer_velocity_final")?) + moving;
     Some(Statement::at_most("energy_gained", "1", after / before - 1.0, 0.0, ENERGY_SLACK))
 }

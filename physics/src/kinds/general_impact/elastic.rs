@@ -128,7 +128,9 @@ fn reduced(body: &Body, path: &std::path::Path, contacts: &[ContactInfo]) -> Res
     let points: Vec<_> = contacts.iter().map(ContactInfo::struck).collect();
     let places: Vec<_> = points
         .iter()
-        .map(|point| json!([<[f64; 3]>::from(point.at.point), <[f64; 3]>::from(point.at.normal), point.circles]))
+        .map(|point| {
+            json!([<[f64; 3]>::from(point.at.point), <[f64; 3]>::from(point.at.normal), point.circles])
+        })
         .collect();
     let inputs = json!({
         "body": "struck solid", "revision": REVISION, "mesh": sha256_hex(&content), "points": places,

@@ -1,6 +1,7 @@
 //! An outer body strikes a wall or another body: reduced model C, which has no modes here. With a plate between, see
 //! [`super::plate_impact`].
 
+mod between;
 mod body;
 mod checks;
 mod elastic;

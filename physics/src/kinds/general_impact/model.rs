@@ -3,13 +3,11 @@
 //! A rigid outer body and the inner one, if they meet, are solved in the frame of the inner one: errors are then relative to the closing
 //! speed, however small it is compared with their own speeds.
 
+use super::between::Between;
 use super::elastic::ElasticBody;
 use super::scene::sphere_radius;
-use super::{Body, CURVES, GeneralImpact, ImpactQuantities, Kind, Struck};
-use crate::analytical::hertz::HertzImpact;
-use crate::body::ModalBody;
+use super::{CURVES, GeneralImpact, ImpactQuantities, Kind, Struck};
 use crate::body::free_sphere::sphere_residual;
-use crate::contact::Hertz;
 use crate::dynamics::integration::{Converged, Integration, Options};
 use crate::dynamics::memory::{self, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
@@ -20,8 +18,7 @@ use crate::kinds::{Kind as _, SeriesModel};
 use crate::result::{
     BenderSummary, CUT, ElasticLimit, History, Outcome, Point, StackSummary, Summary, Table,
 };
-use crate::scene::{self, Inner, Material, Model, Outer, Scene, Shape};
-use nalgebra::Vector3;
+use crate::scene::{self, Inner, Model, Outer, Scene};
 use std::time::Instant;
 
 /// Tolerance of the runs that compare force peaks with and without what the model omits.
@@ -45,19 +42,6 @@ pub(super) struct ContactModel {
     between: Option<Between>,
 }
 
-/// The elastic body between the contacts.
-#[derive(Debug)]
-struct Between {
-    body: ElasticBody,
-    /// The same impact on the body's coarser mesh.
-    coarse: Option<System>,
-    /// Cosine of the angle between the direction of the outer contact and the inner one's, both along z: 1 on parallel faces.
-    alignment: f64,
-    /// Mass in kg; `None` if the body is held.
-    free_mass: Option<f64>,
-    warnings: Vec<String>,
-}
-
 impl ContactModel {
     /// Of `scene`, of an elastic body with so many `modes`, or all there are.
     ///
@@ -73,7 +57,16 @@ impl ContactModel {
         let system = match (&setup.struck, &setup.inner) {
             (Some(Struck::Wall(_)), _) => System::on_wall(outer, &face),
             (Some(Struck::Body(body)), inner) => {
-                let (system, found) = on_body(body, outer, &setup.outer, inner.as_ref(), modes)?;
+                let elastic = ElasticBody::new(body)?;
+                let (system, found) = Between::joined(elastic, body, outer, &setup.outer, inner.as_ref())?;
+                let system = match modes {
+                    Some(modes) if modes > system.modes => {
+                        let most = system.modes;
+                        return Err(Error::Usage(format!("--modes {modes}: the body has {most} at most")));
+                    }
+                    Some(modes) => system.lowest(modes),
+                    None => system,
+                };
                 between = Some(found);
                 system
             }
@@ -229,9 +222,10 @@ impl ContactModel {
             Some(_) => "the model omits higher modes of the body, which change forces or efficiency",
         };
         warnings.extend((omitted > NOTABLE).then(|| format!("{what} by about {:.1} %", 100.0 * omitted)));
-        let mesh_error = self.between.as_ref().and_then(|between| {
-            between.coarse.as_ref().map(|coarse| self.change(&self.system, coarse))
-        });
+        let mesh_error = self
+            .between
+            .as_ref()
+            .and_then(|between| between.coarse.as_ref().map(|coarse| self.change(&self.system, coarse)));
         warnings.extend(mesh_error.filter(|error| *error > NOTABLE).map(|error| {
             format!("the body's mesh changes forces or efficiency by about {:.1} %: refine it", 100.0 * error)
         }));
@@ -299,72 +293,6 @@ impl ContactModel {
         });
         History { time: all.time.clone(), curves: curves.collect() }
     }
-}
-
-impl Between {
-    /// Velocities in m/s along z that a free body's centre of mass gets by these impulses in N s, in the directions of outer and inner
-    /// contact; zero of a body that is held.
-    fn velocities(&self, outer: f64, inner: f64) -> [f64; 2] {
-        let Some(mass) = self.free_mass else { return [0.0; 2] };
-        [(inner * self.alignment - outer) / mass, (inner - outer * self.alignment) / mass]
-    }
-
-    /// Modes that the static solutions of all contacts, and so each further block of Ritz vectors, have.
-    fn block(&self) -> usize {
-        2 * self.body.contacts.len()
-    }
-}
-
-/// The system of `outer`, as the scene has it, that strikes `body`, with the `inner` body behind.
-fn on_body(
-    body: &Body,
-    outer: MovingBody,
-    given: &Outer,
-    inner: Option<&Inner>,
-    modes: Option<usize>,
-) -> Result<(System, Between)> {
-    let elastic = ElasticBody::new(body)?;
-    let outer = MovingBody { tip_radius: elastic.tip_radius(0, outer.tip_radius)?, ..outer };
-    let moving = inner.map(|inner| {
-        let moving = MovingBody::inner(inner);
-        Ok(MovingBody { tip_radius: elastic.tip_radius(1, moving.tip_radius)?, ..moving })
-    });
-    let moving = moving.transpose()?;
-    // contact patches under the force of the outer body on a half-space
-    let law = |moving: &MovingBody| Hertz::new(moving.tip_radius, &moving.material, &body.material);
-    let hit = HertzImpact { mass: outer.mass, speed: outer.speed, stiffness: law(&outer).stiffness };
-    let patch = [Some(&outer), moving.as_ref()]
-        .map(|moving| moving.map_or(1.0, |moving| law(moving).contact_radius(hit.force_peak())));
-    let tip = |shape: &Shape, material: &Material, patch: f64| {
-        sphere_radius(shape).map_or(0.0, |radius| sphere_residual(radius, material, patch))
-    };
-    let tips = [
-        tip(&given.shape, &given.material, patch[0]),
-        inner.map_or(0.0, |inner| tip(&inner.shape, &inner.material, patch[1])),
-    ];
-    let join = |modal: ModalBody| match &moving {
-        Some(inner) => System::of(&[outer.clone(), inner.clone()], &modal, &body.material, tips),
-        None => System::on_body(outer.clone(), &modal, &body.material, tips[0]),
-    };
-    let (fine, coarse) = elastic.modal(body, patch);
-    let mut system = join(fine);
-    if let Some(modes) = modes {
-        if modes > system.modes {
-            return Err(Error::Usage(format!("--modes {modes}: the body has {} at most", system.modes)));
-        }
-        system = system.lowest(modes);
-    }
-    let normals: Vec<Vector3<f64>> = elastic.contacts.iter().map(|c| Vector3::from(c.normal)).collect();
-    let mut warnings = elastic.warnings.clone();
-    warnings.extend(elastic.patch_warnings(patch));
-    let between = Between {
-        coarse: coarse.map(join),
-        alignment: normals.get(1).map_or(0.0, |inner| -normals[0].dot(inner)),
-        free_mass: (!elastic.fine.rigid.is_empty()).then(|| body.material.density * elastic.fine.volume),
-        body: elastic,
-        warnings,
-    };
-    Ok((system, between))
 }
 
 /// Relative difference of the force peak of `scene`, with elastic bodies, from Hertz's closed form; `None` for a bender or stack, which

@@ -9,13 +9,13 @@ use crate::kinds::body_reading;
 use crate::kinds::plate_impact::PLATE;
 use crate::material::Material;
 use crate::scene::collision::Collision;
-use crate::scene::grammar::{
-    BODY_MATERIAL, Bound, Field, Kind, choice, optional, positive, pure, required,
-};
+use crate::scene::grammar::{BODY_MATERIAL, Bound, Field, Kind, choice, optional, positive, pure, required};
 use crate::scene::material::material;
 use crate::scene::quantity::Dimension;
 use crate::scene::values::{Node, Values};
-use crate::scene::{Alias, FileFault, Geometry, Inner, Language, Outer, ReferenceSettings, Scene, Series, Setup, Shape};
+use crate::scene::{
+    Alias, FileFault, Geometry, Inner, Language, Outer, ReferenceSettings, Scene, Series, Setup, Shape,
+};
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -142,7 +142,11 @@ static WALL: [Field; 2] = [
 const MOST_FIXED: usize = 64;
 
 static BODY: [Field; 6] = [
-    required("file", Kind::Text, "Mesh (.msh .inp .bdf .med .vtu) or CAD file (.step .stp), relative to the scene file"),
+    required(
+        "file",
+        Kind::Text,
+        "Mesh (.msh .inp .bdf .med .vtu) or CAD file (.step .stp), relative to the scene file",
+    ),
     optional(
         "unit",
         Kind::Choice(&[choice("m"), choice("mm"), choice("um"), choice("cm"), choice("in")]),
@@ -189,7 +193,11 @@ impl Language for super::Kind {
                 Kind::Table(&WALL),
                 "Flat wall that the outer body strikes; there is no inner body",
             ),
-            optional("body", Kind::Table(&BODY), "Elastic body from a mesh or CAD file that the outer body strikes"),
+            optional(
+                "body",
+                Kind::Table(&BODY),
+                "Elastic body from a mesh or CAD file that the outer body strikes",
+            ),
             required("outer", Kind::Table(with_place(&OUTER)), "The body that strikes"),
             optional(
                 "inner",
@@ -227,7 +235,8 @@ impl Language for super::Kind {
         let (outer_table, inner_table) = (root.table("outer")?, root.optional_table("inner")?);
         let struck = match (root.optional_table("wall")?, root.optional_table("body")?) {
             (Some(wall), _) => {
-                let material = wall.0.contains_key("material").then(|| material(materials, wall.text("material")?));
+                let material =
+                    wall.0.contains_key("material").then(|| material(materials, wall.text("material")?));
                 Some(Struck::Wall(Wall { material: material.transpose()? }))
             }
             (None, Some(body)) => {

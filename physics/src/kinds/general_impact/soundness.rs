@@ -25,7 +25,9 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
         Rule {
             fields: vec!["wall", "body"],
             holds: ["plate", "body", "wall"].into_iter().filter(|name| has(name)).count() < 2,
-            message: "the scene has two of [plate], [body] and [wall], but the outer body strikes one of them".into(),
+            message:
+                "the scene has two of [plate], [body] and [wall], but the outer body strikes one of them"
+                    .into(),
             help: "keep one of them",
         },
         Rule {
@@ -55,8 +57,9 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
         Rule {
             fields: vec!["kind"],
             holds: has("wall") || has("body") || has("inner"),
-            message: "`inner` is missing: without [plate], [body] and [wall] the outer body strikes the inner one"
-                .into(),
+            message:
+                "`inner` is missing: without [plate], [body] and [wall] the outer body strikes the inner one"
+                    .into(),
             help: "add [inner] with kind, radius and material; or [wall], [body] or [plate]",
         },
         Rule {

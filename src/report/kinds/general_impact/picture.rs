@@ -3,8 +3,8 @@
 use crate::format::measure;
 use crate::kinds::general_impact::{GeneralImpact, Struck};
 use crate::plot::svg::{Svg, Theme, x2};
-use crate::scene::Material;
 use crate::report::figure::scene_drawing::{DrawingScale, body, body_in_words, materials, shown_radius};
+use crate::scene::Material;
 use maud::{Markup, html};
 
 const WIDTH: f64 = 340.0;
@@ -60,7 +60,8 @@ pub(super) fn measures(scene: &GeneralImpact) -> Vec<(String, String)> {
     let aslant =
         if outer.angle == 0.0 { String::new() } else { format!(", at {}", measure(outer.angle, "rad")) };
     let moving = |speed: f64| format!(", {}", measure(speed, "m/s"));
-    let material = |material: Option<&Material>| material.map_or("rigid", |material| &material.name).to_owned();
+    let material =
+        |material: Option<&Material>| material.map_or("rigid", |material| &material.name).to_owned();
     let struck = scene.struck.as_ref().map(|struck| match struck {
         Struck::Wall(wall) => ("wall".to_owned(), material(wall.material.as_ref())),
         Struck::Body(body) => {
