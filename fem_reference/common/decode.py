@@ -40,9 +40,9 @@ def decode(kind: type[T], document: Any) -> T:
     """Decoded JSON as a ``kind``, a dataclass.
 
     A field is a number, a text, a truth value, one of the values of a `Literal`, a tuple (from a
-    list), a dataclass (from an object), an object as it stands (``dict[str, Any]``), or one of
-    these or ``None`` (null or absent). Among several dataclasses the key ``kind`` chooses, by the
-    name of the class in lower case.
+    list), a dataclass (from an object), an object as it stands (``dict[str, Any]``), any value as
+    it stands (``object``), or one of these or ``None`` (null or absent). Among several dataclasses
+    the key ``kind`` chooses, by the name of the class in lower case.
 
     Raises:
         SceneError: a field is missing, unknown or of another type.
@@ -73,10 +73,11 @@ def member(node: Any, path: str, key: str) -> Any:
 
 
 class _Decoder:
-    """Notes, by the path of an object, the keys that it may have."""
+    """Notes, by the path of an object, the keys that it may have, and what stays as it is."""
 
     def __init__(self) -> None:
         self.known: defaultdict[str, list[str]] = defaultdict(list)
+        self.whole: set[str] = set()
 
     def object(self, kind: type[Any], node: Any, path: str) -> Any:
         """A dataclass from the object at ``path``."""
@@ -119,6 +120,9 @@ class _Decoder:
                 raise SceneError(f"{path} must be a list, not {_show(node)}")
             element = get_args(hint)[0]
             return tuple(self.value(element, each, f"{path}[{k}]") for k, each in enumerate(node))
+        if hint is object:
+            self.whole.add(path)
+            return node
         return node if get_origin(hint) is dict else _scalar(hint, node, path)
 
     def chosen(self, kinds: list[Any], node: Any, path: str) -> Any:
@@ -134,7 +138,7 @@ class _Decoder:
         if isinstance(node, list):
             for k, each in enumerate(node):
                 self.refuse_unknown(each, f"{path}[{k}]")
-        elif isinstance(node, dict):
+        elif isinstance(node, dict) and path not in self.whole:
             known = dict.fromkeys(self.known[path])
             for key, each in node.items():
                 if key not in known:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import math
 import re
 from pathlib import Path
@@ -12,6 +11,7 @@ import meshio
 import numpy as np
 
 from ..common.errors import SceneError, SolverError
+from ..common.mesh_files import require_replaceable
 from ..common.output import write_json
 from ..common.settings import RESOLUTIONS
 from ..common.versions import versions
@@ -39,26 +39,6 @@ def check_geometry(path: Path, scene: SeatScene) -> None:
     noted = GEOMETRY.search(path.read_bytes())
     if noted and scene.geometry_hash and noted[1].decode() != scene.geometry_hash:
         raise SolverError(f"mesh {path} is not one of this seat: it was made for another geometry")
-
-
-def require_replaceable(path: Path) -> None:
-    """Refuse to put a mesh where files lie that are no mesh of this program with its description.
-
-    Raises:
-        SolverError: naming the file that would be lost.
-    """
-    there = next((file for file in (path, path.with_suffix(".json")) if file.exists()), None)
-    if there is None:
-        return
-    try:
-        described = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
-        if {"geometry_hash", "sha256"} <= described.keys():
-            return
-    except (OSError, ValueError, AttributeError):
-        pass
-    raise SolverError(
-        f"{there} exists and is no mesh of this program with its description; choose another --out"
-    )
 
 
 def write_seat_mesh(path: Path, scene: SeatScene, resolution: str, size_factor: float) -> None:

@@ -1,0 +1,263 @@
+"""The mesh of a CAD part: curved quadratic tetrahedra, fine at the contacts and fixed edges."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import gmsh
+import numpy as np
+
+from ..common.arrays import Floats, Ints
+from ..common.errors import SceneError
+from .body import Body, check_one_part, check_quality, require_near
+from .cells import GMSH_NODES
+from .contact import EDGE_ELEMENTS, described
+from .curvature import Curvature, of_face
+from .part import TRIANGLE6, UNIT, Part, coarse_skin, load, on_face, unmeshable
+from .scene import BodyScene, Place, place
+from .sizing import (
+    CONTACT_SHARE,
+    EDGE_SHARE,
+    FIXED_EDGE_SHARE,
+    LEAST_CONTACT_SHARE,
+    ContactSize,
+    Sizes,
+    chosen_sizes,
+    set_sizes,
+    walls,
+)
+from .skin import Skin, SurfacePoint
+from .tets import qualities
+
+FRONTAL, DELAUNAY, HXT = 6, 1, 10
+"""gmsh's numbers of its algorithms, the first in two dimensions. Delaunay on its own triangles left
+flat tetrahedra in a thin plate."""
+POOR = 0.05
+"""Quality below which the next algorithm is tried."""
+TETRAHEDRON10 = 11
+VOLUME_ERROR = 0.01
+"""Largest relative difference of the mesh's volume from the part's."""
+AT_CURVE = 0.25
+"""A contact nearer to a smooth curve than this share of its elements is moved onto it."""
+
+
+@dataclass(frozen=True)
+class _Strike:
+    """A contact on the part, in gmsh's unit."""
+
+    face: int
+    place: Floats
+    distance: float
+    normal: Floats
+    curvature: Curvature | None
+    size: float
+
+
+@dataclass(frozen=True)
+class CadMesh:
+    """The mesh of a part and what is known of it from CAD."""
+
+    body: Body
+    part: Part
+    fixed: np.ndarray[Any, Any]
+    contacts: dict[str, dict[str, Any]]
+    volume: float
+    """Of the part, m^3."""
+    scale: float
+    """Factor on all sizes that keeps the number of unknowns within bounds."""
+
+
+def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
+    """Mesh a CAD part; gmsh runs (`files.gmsh_session`).
+
+    Raises:
+        SceneError: the file, a name, a point or a size is not sound, or gmsh cannot mesh it.
+    """
+    part = load(path, scene.body.unit)
+    skin, owner = coarse_skin(part)
+    strikes = {
+        name: _strike(part, skin, owner, place(contact.at, f"{name}.at"), f"{name}.at")
+        for name, contact in scene.contacts().items()
+    }
+    found = walls(skin)
+    points = {name: _point(strike) for name, strike in strikes.items()}
+    contacts = [ContactSize(points[name], each.place, each.size) for name, each in strikes.items()]
+    largest = scene.body.element_size / UNIT if scene.body.element_size else None
+    diagonal = float(np.linalg.norm(np.ptp(skin.points, axis=0)))
+    sizes = chosen_sizes(found, contacts, largest, diagonal)
+    faces = _fixed_faces(scene, part, skin, owner, sizes)
+    edges = _fixed_edges(faces, skin, owner, sizes)
+    for algorithm in (DELAUNAY, HXT):
+        _generate(part, sizes, factor, edges, algorithm)
+        body, number = _body(part)
+        if qualities(body.points, body.cells).min() > POOR:
+            break
+    check_quality(body, part.name)
+    check_one_part(body, part.name)
+    return CadMesh(
+        body,
+        part,
+        _fixed_nodes(body, faces, number),
+        {name: _stated(body, each) for name, each in strikes.items()},
+        part.volume(),
+        sizes.scale,
+    )
+
+
+def _strike(part: Part, skin: Skin, owner: Ints, at: Place, path: str) -> _Strike:
+    face, snapped, meant = on_face(part, skin, owner, at, path)
+    near = skin.nearest(snapped, owner == face)
+    curvature = of_face(face, snapped, near.normal, UNIT)
+    normal = curvature.normal if curvature else near.normal
+    through = skin.exit(near.place, -normal)
+    wall = through[0] if through else float(np.ptp(skin.points, axis=0).max())
+    distance = float(np.linalg.norm(snapped - meant))
+    if not isinstance(at, str):
+        require_near(path, at, distance * UNIT, 0.5 * CONTACT_SHARE * wall * UNIT)
+    edge = skin.border_distance(SurfacePoint(snapped, normal, near.face))
+    size = CONTACT_SHARE * wall
+    if edge is not None:
+        size = max(min(size, EDGE_SHARE * edge), LEAST_CONTACT_SHARE * wall)
+        if edge < EDGE_ELEMENTS * size:
+            raise SceneError(
+                f"{path} is {edge * UNIT:.3g} m away from the edge of its face, whose circle of "
+                f"pressure needs at least {EDGE_ELEMENTS * size * UNIT:.3g} m (wall "
+                f"{wall * UNIT:.3g} m): move it away from the edge"
+            )
+    moved = _at_curve(face, snapped, size)
+    return _Strike(face, moved, float(np.linalg.norm(moved - meant)), normal, curvature, size)
+
+
+def _at_curve(face: int, snapped: Floats, size: float) -> Floats:
+    """The point, or that of a smooth border of its face so near that elements would be flat."""
+    for _, curve in gmsh.model.getBoundary([(2, face)], combined=False, oriented=False):
+        if gmsh.model.getType(1, curve) == "Unknown":
+            continue
+        on_curve = np.array(gmsh.model.getClosestPoint(1, curve, snapped.tolist())[0])
+        if np.linalg.norm(on_curve - snapped) < AT_CURVE * size:
+            return on_curve
+    return snapped
+
+
+def _point(strike: _Strike) -> int:
+    """Tag of a point of gmsh's model at a contact, where a node will be."""
+    tolerance = 1e-6 * strike.size
+    for _, point in gmsh.model.getEntities(0):
+        there = np.array(gmsh.model.getValue(0, point, []))
+        if np.linalg.norm(there - strike.place) <= tolerance:
+            return int(point)
+    point = int(gmsh.model.occ.addPoint(*strike.place))
+    gmsh.model.occ.synchronize()
+    borders = gmsh.model.getBoundary([(2, strike.face)], combined=False, oriented=False)
+    for _, curve in borders:
+        if gmsh.model.getType(1, curve) == "Unknown":
+            continue
+        near = np.array(gmsh.model.getClosestPoint(1, curve, strike.place.tolist())[0])
+        if np.linalg.norm(near - strike.place) <= tolerance:
+            gmsh.model.mesh.embed(0, [point], 1, curve)
+            return point
+    gmsh.model.mesh.embed(0, [point], 2, strike.face)
+    return point
+
+
+def _fixed_faces(scene: BodyScene, part: Part, skin: Skin, owner: Ints, sizes: Sizes) -> list[int]:
+    faces: list[int] = []
+    for k, each in enumerate(scene.body.fixed):
+        path = f"body.fixed[{k}]"
+        at = place(each, path)
+        if isinstance(at, str):
+            faces += part.faces_of(at, path).tolist()
+            continue
+        face, snapped, meant = on_face(part, skin, owner, at, path)
+        size = float(sizes.at(snapped[None])[0])
+        require_near(path, at, float(np.linalg.norm(snapped - meant)) * UNIT, 0.5 * size * UNIT)
+        faces.append(face)
+    return sorted(set(faces))
+
+
+def _fixed_edges(
+    faces: list[int], skin: Skin, owner: Ints, sizes: Sizes
+) -> list[tuple[int, float]]:
+    """Curves around fixed faces at which the surface turns sharply, and the size along each."""
+    border: dict[int, int] = {}
+    for face in faces:
+        for _, curve in gmsh.model.getBoundary([(2, face)], combined=False, oriented=False):
+            border[curve] = border.get(curve, 0) + 1
+    found = []
+    for curve in (curve for curve, times in border.items() if times == 1):
+        least, most = gmsh.model.getParametrizationBounds(1, curve)
+        middle = np.array(gmsh.model.getValue(1, curve, [0.5 * (least[0] + most[0])]))
+        between = [each for each in gmsh.model.getAdjacencies(1, curve)[0] if each in owner]
+        normals = [skin.nearest(middle, owner == each).normal for each in between]
+        if len(normals) == 2 and normals[0] @ normals[1] < np.cos(np.radians(40.0)):
+            found.append((int(curve), FIXED_EDGE_SHARE * float(sizes.at(middle[None])[0])))
+    return found
+
+
+def _generate(
+    part: Part, sizes: Sizes, factor: float, fixed_edges: list[tuple[int, float]], algorithm: int
+) -> None:
+    """Mesh the part in gmsh."""
+    gmsh.model.mesh.clear()
+    for key, value in (
+        ("Mesh.Algorithm", FRONTAL),
+        ("Mesh.Algorithm3D", algorithm),
+        ("Mesh.Optimize", 1),
+        ("Mesh.ElementOrder", 2),
+        ("Mesh.HighOrderOptimize", 1),
+    ):
+        gmsh.option.setNumber(key, value)
+    with tempfile.TemporaryDirectory() as folder:
+        set_sizes(sizes, factor, fixed_edges, Path(folder))
+        try:
+            gmsh.model.mesh.generate(3)
+        except Exception as error:
+            raise unmeshable(part.name, error) from error
+
+
+def _body(part: Part) -> tuple[Body, Ints]:
+    """The mesh in m, and the number of the node of each of gmsh's tags (-1: no element has it)."""
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    _, flat = gmsh.model.mesh.getElementsByType(TETRAHEDRON10, part.solid)
+    if flat.size == 0:
+        raise unmeshable(part.name, "gmsh made no tetrahedra")
+    cells = flat.astype(np.int64).reshape(-1, 10)[:, list(GMSH_NODES["tetra10"])]
+    used = np.unique(cells)
+    number = np.full(int(tags.max()) + 1, -1, dtype=np.int64)
+    number[used] = np.arange(used.size)
+    points = np.empty((used.size, 3))
+    at = number[tags.astype(np.int64)]
+    points[at[at >= 0]] = UNIT * coordinates.reshape(-1, 3)[at >= 0]
+    groups = [
+        replace(each, nodes=number[_nodes(each.elements)]) if each.kind == "surface" else each
+        for each in part.groups
+    ]
+    return Body(points, number[cells], groups), number
+
+
+def _nodes(faces: Ints) -> Ints:
+    """Tags, gmsh's, of the nodes of faces, their borders included."""
+    found = [gmsh.model.mesh.getElementsByType(TRIANGLE6, int(face))[1] for face in faces]
+    return np.unique(np.concatenate(found).astype(np.int64))
+
+
+def _fixed_nodes(body: Body, faces: list[int], number: Ints) -> np.ndarray[Any, Any]:
+    fixed = np.zeros(body.points.shape[0], dtype=bool)
+    if faces:
+        fixed[number[_nodes(np.array(faces))]] = True
+    return fixed
+
+
+def _stated(body: Body, strike: _Strike) -> dict[str, Any]:
+    """The contact as the description of the mesh has it, at the node made for it."""
+    found = body.skin.nearest(strike.place * UNIT)
+    node = body.skin.faces[found.face, :3]
+    away = np.linalg.norm(body.points[node] - strike.place * UNIT, axis=1)
+    corner = int(np.argmin(away))
+    if away[corner] < 0.1 * strike.size * UNIT:
+        found = replace(found, place=body.points[node[corner]])
+    point = replace(found, normal=strike.normal)
+    return described(body, point, strike.distance * UNIT, strike.curvature)

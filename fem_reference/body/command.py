@@ -1,0 +1,50 @@
+"""The commands of ``fem_reference`` for scenes of kind impact, and ``groups``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from ..common.arguments import Study
+
+
+def _mesh(document: Any, arguments: argparse.Namespace) -> None:
+    from .mesh_file import write_body_mesh
+    from .scene import parse_body_scene
+
+    write_body_mesh(arguments.out, parse_body_scene(document), arguments.size_factor)
+    print(json.dumps({"mesh": str(arguments.out)}))
+
+
+def _metres(text: str) -> float:
+    units = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254}
+    try:
+        value = units[text] if text in units else float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < 1e3:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no unit; known are {', '.join(units)}, or metres per number of the file"
+        )
+    return value
+
+
+def _groups_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", type=Path, help="CAD part or mesh of a body")
+    parser.add_argument("--unit", type=_metres, help="of the file's numbers: mm, m, um, in, 0.001")
+
+
+def _groups(arguments: argparse.Namespace) -> None:
+    from .mesh_file import groups_of
+
+    print(json.dumps(groups_of(arguments.file, arguments.unit), allow_nan=False))
+
+
+COMMANDS = {"mesh": _mesh}
+STUDIES = {
+    "groups": Study(
+        "named groups, size and unit of a CAD part or a mesh", _groups_arguments, _groups
+    )
+}
