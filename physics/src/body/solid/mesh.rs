@@ -282,7 +282,7 @@ fn connectivity(numbers: VertexNumbers, per_cell: usize) -> Option<Vec<usize>> {
 
 /// A box of the given lengths cut into six tetrahedra per brick, its corners moved by `place`.
 #[cfg(test)]
-pub(super) fn boxes(
+pub(crate) fn boxes(
     lengths: [f64; 3],
     bricks: [usize; 3],
     order: usize,

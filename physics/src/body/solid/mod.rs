@@ -15,6 +15,8 @@ mod pressure;
 mod struck;
 mod surface;
 
+#[cfg(test)]
+pub(crate) use mesh::boxes;
 pub use mesh::TetMesh;
 pub use meshed::{BodyMesh, ContactInfo};
 pub use pressure::SurfacePoint;
