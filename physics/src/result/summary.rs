@@ -124,6 +124,9 @@ pub struct Summary {
     /// `None` of other bodies, or if it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh_error: Option<f64>,
+    /// Reduced models of a body from a mesh whose scene lists them: the lowest eigenfrequencies in Hz, ascending.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub frequencies: Vec<f64>,
     /// Estimated error of the final velocities from the time integration, over the impact speed; of impacts with many
     /// contacts only, which amplify it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -268,6 +271,7 @@ impl Summary {
             vibration: None,
             truncation_error: None,
             mesh_error: None,
+            frequencies: Vec::new(),
             integration_error: None,
             choice: None,
             uncertainty: BTreeMap::new(),

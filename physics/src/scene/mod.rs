@@ -99,6 +99,9 @@ pub struct ReducedSettings {
     pub model: Option<Model>,
     /// Number of modes; `None` = the program's choice (model A has one).
     pub modes: Option<usize>,
+    /// How many eigenfrequencies of a body from a mesh are listed; `None` = none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequencies: Option<usize>,
 }
 
 /// Geometry of the reference.

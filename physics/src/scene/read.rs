@@ -214,13 +214,15 @@ fn syntax(name: &str, text: &str, error: &toml::de::Error) -> Error {
 }
 
 fn reduced(settings: Option<Node>) -> Result<ReducedSettings> {
-    let mut reduced = ReducedSettings { model: None, modes: None };
+    let mut reduced = ReducedSettings { model: None, modes: None, frequencies: None };
     let Some(settings) = settings else { return Ok(reduced) };
     if settings.0.contains_key("model") {
         reduced.model = Some(settings.text("model")?.parse().map_err(Error::Internal)?);
     }
-    if let Some(Checked::Count(modes)) = settings.0.get("modes") {
-        reduced.modes = usize::try_from(*modes).ok();
+    for (key, value) in [("modes", &mut reduced.modes), ("frequencies", &mut reduced.frequencies)] {
+        if let Some(Checked::Count(count)) = settings.0.get(key) {
+            *value = usize::try_from(*count).ok();
+        }
     }
     Ok(reduced)
 }

@@ -73,10 +73,7 @@ fn jacobian(places: &Places, derivatives: &[Vector3<f64>; NODES]) -> Matrix3<f64
 /// Least Jacobian determinant at nodes and points of quadrature over that of the straight element, at most 1; not positive where the
 /// element folds.
 pub(super) fn least_jacobian(places: &Places) -> f64 {
-    let corner = |a: usize| std::array::from_fn(|b| f64::from(u8::from(a == b)));
-    let middle = |[a, b]: [usize; 2]| std::array::from_fn(|c| if c == a || c == b { 0.5 } else { 0.0 });
-    let nodes = (0..4).map(corner).chain(EDGES.into_iter().map(middle));
-    let all = nodes.chain(rule().map(|(place, _)| place));
+    let all = at_nodes().into_iter().chain(rule().map(|(place, _)| place));
     let [a, b, c] = [1, 2, 3].map(|k| places[k] - places[0]);
     let straight = a.dot(&b.cross(&c));
     all.map(|l| jacobian(places, &derivatives(l)).determinant() / straight).fold(1.0, f64::min)
@@ -94,6 +91,23 @@ fn points(places: &Places) -> impl Iterator<Item = ([f64; NODES], [Vector3<f64>;
         let jacobian = jacobian(places, &derivatives);
         let inverse = jacobian.try_inverse().unwrap_or_else(Matrix3::zeros).transpose();
         (shapes(l), derivatives.map(|d| inverse * d), weight * jacobian.determinant() / 6.0)
+    })
+}
+
+/// Gradients of the displacement at the nodes, of an element whose nodes are displaced by `moved` m. Shape (10).
+pub(super) fn gradients_at_nodes(places: &Places, moved: &Places) -> [Matrix3<f64>; NODES] {
+    at_nodes().map(|l| {
+        let derivatives = derivatives(l);
+        let inverse = jacobian(places, &derivatives).try_inverse().unwrap_or_else(Matrix3::zeros);
+        jacobian(moved, &derivatives) * inverse
+    })
+}
+
+/// Barycentric coordinates of the nodes.
+fn at_nodes() -> [[f64; 4]; NODES] {
+    std::array::from_fn(|k| match k {
+        0..4 => std::array::from_fn(|b| f64::from(u8::from(k == b))),
+        _ => std::array::from_fn(|c| if EDGES[k - 4].contains(&c) { 0.5 } else { 0.0 }),
     })
 }
 

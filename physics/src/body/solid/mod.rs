@@ -14,14 +14,16 @@ mod morph;
 mod pressure;
 mod struck;
 mod surface;
+mod view;
 
 #[cfg(test)]
 pub(crate) use mesh::boxes;
 pub use mesh::TetMesh;
 pub use meshed::{BodyMesh, ContactInfo};
 pub use pressure::SurfacePoint;
-pub use struck::{CIRCLES, StruckPoint, StruckSolid};
+pub use struck::{CIRCLES, StruckPoint, StruckSolid, frequencies};
 pub use surface::Surface;
+pub use view::BodyView;
 
 use super::continuum::lanczos::{ShiftInvert, lowest_modes};
 use crate::error::{Error, Result};

@@ -8,6 +8,7 @@ use super::elasticity::{FIXED, SolidMatrices};
 use super::factor::Factor;
 use super::mesh::TetMesh;
 use super::pressure::{Face, Pressed, SurfacePoint};
+use crate::body::continuum::lanczos::{ShiftInvert, lowest_modes};
 use crate::error::{Error, Result};
 use crate::numerics::eigenmodes::symmetric;
 use crate::numerics::vectors::{axpy, dot};
@@ -61,12 +62,13 @@ pub struct StruckSolid {
     pub dofs: usize,
 }
 
-/// The discrete body, factorised.
-struct Statics {
+/// The discrete body, of Young's modulus 1 Pa and density 1 kg/m^3, factorised.
+pub(super) struct Statics {
     matrices: SolidMatrices,
     stiffness: SparseColMat<usize, f64>,
     mass: Vec<f64>,
-    dof: Vec<[usize; 3]>,
+    /// Numbers of the displacements of each node, or [`FIXED`]. Shape (nodes, 3).
+    pub(super) dof: Vec<[usize; 3]>,
     size: usize,
     factor: Factor,
     /// Rigid motions of a free body, mass-normalised and mass-orthogonal; none of one that is held. Shape (6, size).
@@ -172,7 +174,7 @@ fn seen_rigid(rigid: &[Vec<f64>], contacts: usize, seen: impl Fn(usize, &[f64]) 
 }
 
 impl Statics {
-    fn new(mesh: &TetMesh, poisson_ratio: f64, fixed: &[bool]) -> Result<Self> {
+    pub(super) fn new(mesh: &TetMesh, poisson_ratio: f64, fixed: &[bool]) -> Result<Self> {
         let matrices = SolidMatrices::new(mesh, &Material::elastic("unit", 1.0, poisson_ratio, 1.0));
         let mass = matrices.consistent_mass(mesh, 1.0);
         let mut size = 0;
@@ -205,7 +207,7 @@ impl Statics {
     }
 
     /// The force against which a contact presses: along -`normal` over what is `pressed`.
-    fn force(&self, pressed: &Pressed, normal: Vector3<f64>) -> Vec<f64> {
+    pub(super) fn force(&self, pressed: &Pressed, normal: Vector3<f64>) -> Vec<f64> {
         let mut force = vec![0.0; self.size];
         for (node, share) in &pressed.nodes {
             for (c, &dof) in self.dof[*node].iter().enumerate().filter(|(_, dof)| **dof != FIXED) {
@@ -225,7 +227,7 @@ impl Statics {
     }
 
     /// Static displacement under the forces `f`, in place; a free body is accelerated by them and deforms alone.
-    fn solve(&self, f: &mut [f64]) {
+    pub(super) fn solve(&self, f: &mut [f64]) {
         if self.rigid.is_empty() {
             self.factor.solve(f);
             return;
@@ -264,7 +266,7 @@ impl Statics {
     }
 
     /// Frequencies in rad/s and mass-normalised shapes of the lowest Ritz modes that begin with the static solutions `start`.
-    fn ritz(&self, start: Vec<Vec<f64>>) -> Result<(Vec<f64>, Vec<Vec<f64>>)> {
+    pub(super) fn ritz(&self, start: Vec<Vec<f64>>) -> Result<(Vec<f64>, Vec<Vec<f64>>)> {
         let width = start.len();
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let mut block = start;
@@ -296,6 +298,38 @@ impl Statics {
         let omega = squares.iter().take(kept).map(|square| square.max(0.0).sqrt()).collect();
         Ok((omega, (0..kept).map(shape).collect()))
     }
+}
+
+impl ShiftInvert for Statics {
+    fn size(&self) -> usize {
+        self.size
+    }
+
+    fn elastic_size(&self) -> usize {
+        self.size - self.rigid.len()
+    }
+
+    fn mass_times(&self, x: &[f64]) -> Vec<f64> {
+        Statics::mass_times(self, x)
+    }
+
+    fn solve(&self, f: &mut [f64]) {
+        Statics::solve(self, f);
+    }
+
+    fn remove_rigid(&self, x: &mut [f64]) {
+        Statics::remove_rigid(self, x);
+    }
+}
+
+/// The `count` lowest elastic eigenfrequencies in Hz of `mesh` of `material`, whose nodes `fixed` do not move.
+///
+/// # Errors
+/// [`Error::Solver`] if the body is held so that it can still move, or the mesh has not enough modes.
+pub fn frequencies(mesh: &TetMesh, material: &Material, fixed: &[bool], count: usize) -> Result<Vec<f64>> {
+    let statics = Statics::new(mesh, material.poisson_ratio, fixed)?;
+    let unit = (material.youngs_modulus / material.density).sqrt() / std::f64::consts::TAU;
+    Ok(lowest_modes(&statics, count, f64::INFINITY)?.omega.into_iter().map(|omega| unit * omega).collect())
 }
 
 /// The six rigid motions of a mesh without supports. Shape (6, 3 nodes).

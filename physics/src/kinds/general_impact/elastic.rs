@@ -3,11 +3,12 @@
 use super::body::{Body, mesh};
 use crate::body::ModalBody;
 use crate::body::cache::Cache;
-use crate::body::solid::{BodyMesh, ContactInfo, StruckSolid};
+use crate::body::solid::{self, BodyMesh, BodyView, ContactInfo, StruckPoint, StruckSolid};
 use crate::contact::effective_radius;
 use crate::error::{Error, Result};
 use crate::scene::hash::sha256_hex;
 use serde_json::json;
+use std::path::Path;
 
 /// Number of the method that reduces bodies, part of every key: raise it when one comes out otherwise.
 const REVISION: u32 = 1;
@@ -122,22 +123,58 @@ impl ElasticBody {
     }
 }
 
-/// The body on the mesh at `path`, from the cache or computed.
-fn reduced(body: &Body, path: &std::path::Path, contacts: &[ContactInfo]) -> Result<StruckSolid> {
-    let content = std::fs::read(path).map_err(|e| Error::io("reading", path, e))?;
+/// The `count` lowest eigenfrequencies of `body` in Hz, whether or not the contacts excite them.
+///
+/// # Errors
+/// As [`ElasticBody::new`].
+pub(super) fn frequencies(body: &Body, count: usize) -> Result<Vec<f64>> {
+    let path = mesh(&body.mesh_request(1.0))?;
+    let of = json!({ "frequencies": count, "material": body.material });
+    cached(&path, of, || {
+        let BodyMesh { mesh, fixed } = BodyMesh::read(&path)?;
+        solid::frequencies(&mesh, &body.material, &fixed, count)
+    })
+}
+
+/// The surface of `body` to look at, and where it is struck.
+///
+/// # Errors
+/// As [`ElasticBody::new`].
+pub(super) fn view(body: &Body) -> Result<(BodyView, Vec<ContactInfo>)> {
+    let path = mesh(&body.mesh_request(1.0))?;
+    let contacts = BodyMesh::contacts(&path)?;
     let points: Vec<_> = contacts.iter().map(ContactInfo::struck).collect();
-    let places: Vec<_> = points
-        .iter()
-        .map(|point| {
-            json!([<[f64; 3]>::from(point.at.point), <[f64; 3]>::from(point.at.normal), point.circles])
-        })
-        .collect();
-    let inputs = json!({
-        "body": "struck solid", "revision": REVISION, "mesh": sha256_hex(&content), "points": places,
-        "poisson_ratio": body.material.poisson_ratio,
-    });
-    Cache::from_environment().get_or_build(&inputs, || {
+    let of = json!({ "view": body.material, "points": places(&points) });
+    let view = cached(&path, of, || {
+        let BodyMesh { mesh, fixed } = BodyMesh::read(&path)?;
+        BodyView::new(&mesh, &body.material, &fixed, &points)
+    })?;
+    Ok((view, contacts))
+}
+
+/// The body on the mesh at `path`, from the cache or computed.
+fn reduced(body: &Body, path: &Path, contacts: &[ContactInfo]) -> Result<StruckSolid> {
+    let points: Vec<_> = contacts.iter().map(ContactInfo::struck).collect();
+    let of = json!({ "struck": places(&points), "poisson_ratio": body.material.poisson_ratio });
+    cached(path, of, || {
         let BodyMesh { mesh, fixed } = BodyMesh::read(path)?;
         StruckSolid::new(&mesh, body.material.poisson_ratio, &fixed, &points)
     })
+}
+
+fn places(points: &[StruckPoint]) -> Vec<serde_json::Value> {
+    let place = |point: &StruckPoint| {
+        json!([<[f64; 3]>::from(point.at.point), <[f64; 3]>::from(point.at.normal), point.circles])
+    };
+    points.iter().map(place).collect()
+}
+
+/// What `build` makes of the mesh at `path`, from the cache or computed; `of` is what else it depends on.
+fn cached<T>(path: &Path, of: serde_json::Value, build: impl FnOnce() -> Result<T>) -> Result<T>
+where
+    T: serde::Serialize + serde::de::DeserializeOwned,
+{
+    let content = std::fs::read(path).map_err(|e| Error::io("reading", path, e))?;
+    let inputs = json!({ "body": "meshed", "revision": REVISION, "mesh": sha256_hex(&content), "of": of });
+    Cache::from_environment().get_or_build(&inputs, build)
 }

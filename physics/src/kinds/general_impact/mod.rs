@@ -16,6 +16,7 @@ pub use results::{CURVES, ImpactQuantities};
 pub use scene::{GeneralImpact, Struck, Wall};
 
 use super::SeriesModel;
+use crate::body::solid::{BodyView, ContactInfo};
 use crate::contact::Hertz;
 use crate::error::{Error, Result};
 use crate::result::limit::{self, QUASI_STATIC, SMALL_ROTATION};
@@ -81,6 +82,14 @@ impl super::Kind for Kind {
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {
         scene.general_impact().map_or_else(|_| Vec::new(), |setup| checks::checks(setup, outcome))
     }
+}
+
+/// The surface of the body of `scene` to look at, and where outer and inner body strike it; `None` without a body from a mesh.
+///
+/// # Errors
+/// Those of the mesh.
+pub fn body_view(scene: &Scene) -> Result<Option<(BodyView, Vec<ContactInfo>)>> {
+    scene.general_impact().ok().and_then(GeneralImpact::body).map(elastic::view).transpose()
 }
 
 /// How near a result comes to the bounds of the theories behind it.

@@ -4,7 +4,7 @@
 //! speed, however small it is compared with their own speeds.
 
 use super::between::Between;
-use super::elastic::ElasticBody;
+use super::elastic::{self, ElasticBody};
 use super::scene::sphere_radius;
 use super::{CURVES, GeneralImpact, ImpactQuantities, Kind, Struck};
 use crate::body::free_sphere::sphere_residual;
@@ -252,8 +252,13 @@ impl ContactModel {
         warnings.extend(is_cut.then(|| CUT.to_owned()));
         let transmitted = self.setup.inner_mass().map(|mass| 0.5 * mass * result.velocity[1].powi(2));
         let transmitted = transmitted.filter(|_| !is_cut);
+        let frequencies = match (self.scene.reduced.frequencies, self.setup.body()) {
+            (Some(count), Some(body)) => elastic::frequencies(body, count)?,
+            _ => Vec::new(),
+        };
         let system = &self.system;
         Ok(Summary {
+            frequencies,
             energy_residual: Some(result.energy_residual),
             momentum_residual: Some(result.momentum_residual),
             steps: Some(result.steps),

@@ -140,6 +140,7 @@ static WALL: [Field; 2] = [
 
 /// Most places that hold a body, and most frequencies.
 const MOST_FIXED: usize = 64;
+const MOST_FREQUENCIES: u64 = 200;
 
 static BODY: [Field; 6] = [
     required(
@@ -177,8 +178,14 @@ const AT: Field = optional(
     "Place on the surface of [body]: the name of a point, set or face, or three coordinates in its file's system",
 );
 
-static REDUCED: [Field; 1] =
-    [optional("model", Kind::Choice(&[choice("C")]), "Model to run: without a plate there is model C only")];
+static REDUCED: [Field; 2] = [
+    optional("model", Kind::Choice(&[choice("C")]), "Model to run: without a plate there is model C only"),
+    optional(
+        "frequencies",
+        Kind::Count(1, MOST_FREQUENCIES),
+        "Number of the lowest eigenfrequencies of [body] that the result lists; absent = none",
+    ),
+];
 
 impl Language for super::Kind {
     fn keys(&self) -> Vec<Field> {
