@@ -11,7 +11,7 @@ from scipy.linalg import eigh
 from ..common.arrays import Floats
 from .skin import Skin, SurfacePoint
 
-FIRST_RADIUS = 3.0
+FIRST_RADIUS = 2.0
 """Distance of the nodes that a surface is fitted to, over the size of the elements there."""
 LAST_RADIUS = 8.0
 ENOUGH_FOR = {4: 30, 2: 9}
