@@ -236,7 +236,7 @@ def _member(text: str) -> int | str:
     return int(text) if text.lstrip("+-").isdigit() else text.upper().rpartition(".")[2]
 
 
-class _Numbers:
+class Numbers:
     """Positions of nodes or elements by the numbers of the file."""
 
     def __init__(self, what: str, numbers: Ints):
@@ -269,7 +269,7 @@ def _resolve(sets: dict[str, list[int | str]], name: str, within: tuple[str, ...
 
 
 def _mesh(path: Path, deck: _Deck) -> MeshFile:
-    nodes = _Numbers("node", np.array(deck.numbers, dtype=np.int64))
+    nodes = Numbers("node", np.array(deck.numbers, dtype=np.int64))
     blocks = [
         (cell, np.array(rows, dtype=np.int64).reshape(len(rows), -1))
         for cell, rows in deck.elements.items()
@@ -281,7 +281,7 @@ def _mesh(path: Path, deck: _Deck) -> MeshFile:
         for name in deck.node_sets
         if name not in deck.internal
     ]
-    elements = _Numbers("element", np.append(numbers, np.array(deck.other, dtype=np.int64)))
+    elements = Numbers("element", np.append(numbers, np.array(deck.other, dtype=np.int64)))
     for name in (each for each in deck.element_sets if each not in deck.internal):
         at = elements.of(_resolve(deck.element_sets, name), f"the set {name!r}")
         at = at[at < numbers.size]
@@ -297,7 +297,7 @@ def _mesh(path: Path, deck: _Deck) -> MeshFile:
 
 
 def _surface(
-    name: str, rows: list[Reference], deck: _Deck, elements: _Numbers, cells: list[Ints]
+    name: str, rows: list[Reference], deck: _Deck, elements: Numbers, cells: list[Ints]
 ) -> Group:
     corners: dict[int, list[Ints]] = {}
     where = f"the surface {name!r}"

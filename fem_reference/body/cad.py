@@ -25,8 +25,10 @@ from .sizing import (
     LEAST_CONTACT_SHARE,
     ContactSize,
     Sizes,
+    Walls,
     chosen_sizes,
     set_sizes,
+    wall_at,
     walls,
 )
 from .skin import Skin, SurfacePoint
@@ -35,7 +37,7 @@ from .tets import qualities
 FRONTAL, DELAUNAY, HXT = 6, 1, 10
 """gmsh's numbers of its algorithms, the first in two dimensions. Delaunay on its own triangles left
 flat tetrahedra in a thin plate."""
-POOR = 0.05
+POOR = 0.01
 """Quality below which the next algorithm is tried."""
 TETRAHEDRON10 = 11
 VOLUME_ERROR = 0.01
@@ -78,16 +80,15 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     """
     part = load(path, scene.body.unit)
     skin, owner = coarse_skin(part)
+    found = walls(skin)
     strikes = {
-        name: _strike(part, skin, owner, place(contact.at, f"{name}.at"), f"{name}.at")
+        name: _strike(part, skin, owner, found, place(contact.at, f"{name}.at"), f"{name}.at")
         for name, contact in scene.contacts().items()
     }
-    found = walls(skin)
     points = {name: _point(strike) for name, strike in strikes.items()}
     contacts = [ContactSize(points[name], each.place, each.size) for name, each in strikes.items()]
     largest = scene.body.element_size / UNIT if scene.body.element_size else None
-    diagonal = float(np.linalg.norm(np.ptp(skin.points, axis=0)))
-    sizes = chosen_sizes(found, contacts, largest, diagonal)
+    sizes = chosen_sizes(found, contacts, largest)
     faces = _fixed_faces(scene, part, skin, owner, sizes)
     edges = _fixed_edges(faces, skin, owner, sizes)
     for algorithm in (DELAUNAY, HXT):
@@ -107,13 +108,13 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     )
 
 
-def _strike(part: Part, skin: Skin, owner: Ints, at: Place, path: str) -> _Strike:
+def _strike(part: Part, skin: Skin, owner: Ints, found: Walls, at: Place, path: str) -> _Strike:
     face, snapped, meant = on_face(part, skin, owner, at, path)
     near = skin.nearest(snapped, owner == face)
     curvature = of_face(face, snapped, near.normal, UNIT)
     normal = curvature.normal if curvature else near.normal
     through = skin.exit(near.place, -normal)
-    wall = through[0] if through else float(np.ptp(skin.points, axis=0).max())
+    wall = wall_at(found, snapped, through[0] if through else np.inf)
     distance = float(np.linalg.norm(snapped - meant))
     if not isinstance(at, str):
         require_near(path, at, distance * UNIT, 0.5 * CONTACT_SHARE * wall * UNIT)

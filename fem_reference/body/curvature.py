@@ -11,14 +11,11 @@ from scipy.linalg import eigh
 from ..common.arrays import Floats
 from .skin import Skin, SurfacePoint
 
-FIRST_RADIUS = 3.0
+FIRST_RADIUS = 2.0
 """Distance of the nodes that a surface is fitted to, over the size of the elements there."""
 LAST_RADIUS = 8.0
 ENOUGH_FOR = {4: 30, 2: 9}
 """Nodes that a polynomial of a degree takes: twice its coefficients, or half as many again."""
-STRAIGHT = 1e-6
-"""Distance of midside nodes from their edges' middle, over the edge, up to which they are taken
-for made up."""
 ASIDE = 1e-5
 """Step away from a pole, over the range of the parameters."""
 DEGENERATE = 1e-6
@@ -76,10 +73,8 @@ def fitted(skin: Skin, point: SurfacePoint, size: float) -> Curvature:
 
 def _nodes(skin: Skin, point: SurfacePoint) -> Floats:
     """Nodes of the smooth face, midside nodes only if the mesh has curved edges."""
-    own = skin.faces[skin.smooth == skin.smooth[point.face]]
-    a, b = skin.points[own[:, :3]], skin.points[np.roll(own[:, :3], -1, axis=1)]
-    off = np.linalg.norm(skin.points[own[:, 3:]] - 0.5 * (a + b), axis=2)
-    curved = (off > STRAIGHT * np.linalg.norm(b - a, axis=2)).any()
+    smooth = skin.smooth == skin.smooth[point.face]
+    own, curved = skin.faces[smooth], skin.curved[smooth].any()
     return np.asarray(skin.points[np.unique(own if curved else own[:, :3])])
 
 

@@ -1,4 +1,4 @@
-"""Mesh files of other programs: gmsh's and MED by gmsh, Abaqus by `abaqus`, others by meshio."""
+"""Mesh files of other programs: gmsh's and MED by gmsh, VTK's by meshio, decks by readers here."""
 
 from __future__ import annotations
 
@@ -17,12 +17,14 @@ from ..common.errors import SceneError
 from ..common.mesher import start_gmsh
 from .abaqus import read_abaqus
 from .cells import FACET_CORNERS, GMSH_NODES, GMSH_TYPES, SOLIDS
+from .nastran import read_nastran
 from .source import Group, MeshFile
 
 CAD = (".step", ".stp", ".brep", ".iges", ".igs")
 BY_GMSH = (".msh", ".med")
-BY_MESHIO = (".bdf", ".nas", ".fem", ".vtu", ".vtk")
-KNOWN = (*CAD, *BY_GMSH, ".inp", *BY_MESHIO)
+DECKS = {".inp": read_abaqus, ".bdf": read_nastran, ".nas": read_nastran, ".fem": read_nastran}
+"""Formats that meshio reads only in part, or never ends to read."""
+KNOWN = (*CAD, *BY_GMSH, *DECKS, ".vtu", ".vtk")
 LARGEST = 2_000_000_000
 """Bytes of a file that is read."""
 KINDS = {3: "volume", 2: "surface", 1: "curve", 0: "point"}
@@ -68,9 +70,9 @@ def read_mesh(path: Path) -> MeshFile:
     """
     suffix = checked(path)
     try:
-        if suffix == ".inp":
-            return read_abaqus(path)
-        return _by_gmsh(path) if suffix in BY_GMSH else _by_meshio(path, suffix)
+        if suffix in DECKS:
+            return DECKS[suffix](path)
+        return _by_gmsh(path) if suffix in BY_GMSH else _by_meshio(path)
     except (SceneError, ImportError, MemoryError):
         raise
     except BaseException as error:  # meshio ends the process for some faults
@@ -141,7 +143,7 @@ def _physical(
     blocks: list[tuple[str, Ints]],
     first: dict[tuple[str, int], tuple[int, int]],
 ) -> Group:
-    name = gmsh.model.getPhysicalName(dimension, tag) or str(tag)
+    name = gmsh.model.getPhysicalName(dimension, tag).strip() or str(tag)
     entities = [int(each) for each in gmsh.model.getEntitiesForPhysicalGroup(dimension, tag)]
     if dimension == 3:
         elements, offset = [np.zeros(0, dtype=np.int64)], 0
@@ -160,17 +162,11 @@ def _physical(
     return Group(name, KINDS[dimension], nodes=at[node_tags.astype(np.int64)], facets=facets)
 
 
-def _by_meshio(path: Path, suffix: str) -> MeshFile:
+def _by_meshio(path: Path) -> MeshFile:
     # it prints warnings on standard output, which is JSON's
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        mesh = meshio.read(path, file_format="nastran" if suffix in (".nas", ".fem") else None)
+        mesh = meshio.read(path)
     points = np.asarray(mesh.points, dtype=np.float64)
-    nastran = suffix in (".bdf", ".nas", ".fem")
-    if nastran and np.any(np.asarray(mesh.point_data.pop("nastran:ref", 0)) != 0):
-        raise SceneError(
-            f"body.file {path.name} has GRID points in coordinate systems of their own (CP "
-            "above 0); export it in the basic system"
-        )
     counts: dict[str, int] = {}
     for block in mesh.cells:
         counts[block.type] = counts.get(block.type, 0) + len(block.data)
@@ -180,7 +176,7 @@ def _by_meshio(path: Path, suffix: str) -> MeshFile:
 
 
 def _cell_groups(mesh: meshio.Mesh, solid: list[int]) -> Iterator[Group]:
-    """Values of cell arrays of whole numbers: "2" of Nastran's properties, else "material 2"."""
+    """Values of cell arrays of whole numbers, as "material 2"."""
     for array, blocks in mesh.cell_data.items():
         data = [np.asarray(each) for each in blocks]
         if not all(each.dtype.kind in "iu" and each.ndim == 1 for each in data):
@@ -190,7 +186,7 @@ def _cell_groups(mesh: meshio.Mesh, solid: list[int]) -> Iterator[Group]:
             continue
         inside = np.concatenate([data[k] for k in solid] or [np.zeros(0)])
         for value in values:
-            name = str(value) if array == "nastran:ref" else f"{array} {value}"
+            name = f"{array} {value}"
             elements = np.flatnonzero(inside == value)
             if elements.size:
                 yield Group(name, "volume", elements=elements)

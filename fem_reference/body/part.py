@@ -71,24 +71,23 @@ def load(path: Path, unit: float | None) -> Part:
     suffix = checked(path)
     text = read_step(path) if suffix in (".step", ".stp") else None
     own = text.unit if text else None
+    replaced = unit
     if suffix == ".brep":
-        unit = unit or 1.0
-        scaling = unit / UNIT
-    else:
-        if unit is not None and own is None:
-            raise SceneError(
-                f"body.unit is {unit:g} m, but {path.name} states a unit that cannot be "
-                "replaced; leave body.unit out"
-            )
-        scaling = unit / own if unit and own else 1.0
-        unit = unit or own or UNIT
+        own, unit = UNIT, unit or 1.0
+        replaced = unit
     gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
-    gmsh.option.setNumber("Geometry.OCCScaling", scaling)
+    gmsh.option.setNumber("Geometry.OCCScaling", replaced / own if replaced and own else 1.0)
     try:
         gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
         gmsh.model.occ.synchronize()
     except Exception as error:
         raise SceneError(f"body.file {path} cannot be read as {suffix}: {error}") from error
+    if replaced and not own:
+        raise SceneError(
+            f"body.unit is {replaced:g} m, but {path.name} states a unit that cannot be replaced; "
+            "leave body.unit out"
+        )
+    unit = unit or own or UNIT
     solids = [tag for _, tag in gmsh.model.getEntities(3)]
     if len(solids) != 1:
         raise SceneError(

@@ -16,7 +16,7 @@ from ..common.errors import SceneError, SolverError
 from .body import Body, check_one_part, check_quality
 from .cells import GMSH_NODES
 from .contact import described
-from .curvature import STRAIGHT, Curvature
+from .curvature import Curvature
 from .files import gmsh_session
 from .sizing import GROWTH, grid_field
 from .skin import FEATURE_ANGLE, Skin
@@ -95,11 +95,7 @@ def _generated(body: Body, factor: float, scale: float) -> tuple[Floats, Ints]:
 
 def _flat(skin: Skin) -> Floats:
     """Flat triangles (k, 3, 3): of curved faces four each."""
-    a, b = skin.points[skin.faces[:, :3]], skin.points[np.roll(skin.faces[:, :3], -1, axis=1)]
-    off = np.linalg.norm(skin.points[skin.faces[:, 3:]] - 0.5 * (a + b), axis=2)
-    if (off > STRAIGHT * np.linalg.norm(b - a, axis=2)).any():
-        return skin.sub
-    return a
+    return skin.sub if skin.curved.any() else skin.points[skin.faces[:, :3]]
 
 
 def _local_sizes(body: Body) -> Floats:

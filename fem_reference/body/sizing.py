@@ -122,13 +122,25 @@ def graded(places: Floats, radii: Floats, sizes: Floats) -> Floats:
     return found
 
 
-def chosen_sizes(
-    found: Walls, contacts: Sequence[ContactSize], largest: float | None, diagonal: float
-) -> Sizes:
-    """Sizes everywhere, scaled so that the number of unknowns stays within bounds."""
+def wished_sizes(found: Walls, largest: float | None) -> Floats:
+    """(k,) sizes that the walls, and a largest size, ask for at the places of the surface."""
     wished = np.minimum(WALL_SHARE * found.thickness, largest or math.inf)
-    wished = np.minimum(wished, WALL_SHARE * diagonal)
-    far = graded(found.places, found.radii(), wished)
+    wished = np.minimum(wished, WALL_SHARE * np.ptp(found.places, axis=0).max())
+    return graded(found.places, found.radii(), wished)
+
+
+def wall_at(found: Walls, place: Floats, along_normal: float) -> float:
+    """The wall that decides at a contact: the one along its normal, or one beside it.
+
+    A rod that is struck at its end is as thick as its diameter, not as long as it is.
+    """
+    near = Sizes(found.places, found.radii(), wished_sizes(found, None), (), 1.0, 0.0)
+    return min(along_normal, float(near.at(place[None])[0]) / WALL_SHARE)
+
+
+def chosen_sizes(found: Walls, contacts: Sequence[ContactSize], largest: float | None) -> Sizes:
+    """Sizes everywhere, scaled so that the number of unknowns stays within bounds."""
+    far = wished_sizes(found, largest)
     thick = np.minimum(found.thickness, found.thickness[np.isfinite(found.thickness)].max())
     cubes = float((0.5 * found.areas * thick / far**3).sum())
     near = [int(np.argmin(np.linalg.norm(found.places - each.place, axis=1))) for each in contacts]

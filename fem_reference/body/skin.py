@@ -14,6 +14,8 @@ from ..common.arrays import Floats, Ints, Mask
 
 FEATURE_ANGLE = math.radians(40.0)
 """Normals that turn by more at an edge make it a sharp one."""
+STRAIGHT = 1e-6
+"""Distance of a midside node from its edge's middle, over the edge, up to which it is straight."""
 PARTS = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))
 """Four flat triangles of a curved one."""
 CORNERS = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0.5, 0], [0, 0.5, 0.5], [0.5, 0, 0.5]])
@@ -29,6 +31,20 @@ class SurfacePoint:
     normal: Floats
     """Outward, of length 1."""
     face: int
+
+
+@dataclass(frozen=True)
+class _Flat:
+    """Flat triangles, for rays."""
+
+    triangles: Floats
+    """(t, 3, 3)"""
+    faces: Ints
+    """(t,) the curved triangle of each."""
+    middles: Floats
+    squares: Floats
+    """(t,) squared distances of the middles from the origin."""
+    radii: Floats
 
 
 @dataclass(frozen=True)
@@ -79,7 +95,7 @@ class Skin:
 
     @cached_property
     def _edges(self) -> tuple[Ints, Ints, Mask]:
-        """Edges (e, 2) of corners, the two faces (e, 2) of each, and whether it is sharp.
+        """Ends and middle (e, 3) of edges, the two faces (e, 2) of each, whether it is sharp.
 
         An edge that has not just two faces counts as sharp and has the first two.
         """
@@ -93,7 +109,8 @@ class Skin:
         second = order[start + np.minimum(size, 2) - 1]
         cosine = np.einsum("ei,ei->e", normals[first], normals[second])
         sharp = (size != 2) | (cosine < math.cos(FEATURE_ANGLE))
-        return ends[first], np.column_stack([face[first], face[second]]), sharp
+        nodes = np.column_stack([ends, self.faces[:, 3:].T.ravel()])[first]
+        return nodes, np.column_stack([face[first], face[second]]), sharp
 
     @cached_property
     def smooth(self) -> Ints:
@@ -105,17 +122,18 @@ class Skin:
         return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
     def border(self, face: int) -> Floats:
-        """(b, 2, 3) ends of the sharp edges around the smooth face of a triangle."""
-        ends, faces, sharp = self._edges
+        """(b, 3, 3) ends and middle of the sharp edges around the smooth face of a triangle."""
+        nodes, faces, sharp = self._edges
         own = self.smooth == self.smooth[face]
-        return np.asarray(self.points[ends[sharp & own[faces].any(axis=1)]])
+        return np.asarray(self.points[nodes[sharp & own[faces].any(axis=1)]])
 
     def border_distance(self, point: SurfacePoint) -> float | None:
         """Distance from the nearest sharp edge of the smooth face; None: it has none."""
         border = self.border(point.face)
         if border.size == 0:
             return None
-        near = _on_segments(point.place, border[:, 0], border[:, 1])
+        halves = np.concatenate([border[:, [0, 2]], border[:, [2, 1]]])
+        near = _on_segments(point.place, halves[:, 0], halves[:, 1])
         return float(np.linalg.norm(near - point.place, axis=1).min())
 
     def nearest(self, place: Floats, among: Mask | None = None) -> SurfacePoint:
@@ -143,40 +161,45 @@ class Skin:
 
     def exit(self, place: Floats, direction: Floats) -> tuple[float, int] | None:
         """Where a ray from the surface into the body leaves it: distance and triangle."""
-        a = self.sub[:, 0]
+        flat = self._flat
         # spheres around the triangles that the line meets
-        along = self._middles @ direction - place @ direction
-        square = self._squares - 2.0 * (self._middles @ place) + place @ place
-        near = np.flatnonzero(square - along**2 <= self._radii**2 + 1e-12 * self._squares.max())
-        u, v = self.sub[near, 1] - a[near], self.sub[near, 2] - a[near]
-        p = np.cross(direction, v)
+        along = flat.middles @ direction - place @ direction
+        square = flat.squares - 2.0 * (flat.middles @ place) + place @ place
+        near = np.flatnonzero(square - along**2 <= flat.radii**2 + 1e-12 * flat.squares.max())
+        a, b, c = flat.triangles[near].transpose(1, 0, 2)
+        u, v, s = b - a, c - a, place - a
+        p, q = np.cross(direction, v), np.cross(s, u)
         det = np.einsum("ki,ki->k", u, p)
         with np.errstate(divide="ignore", invalid="ignore"):
-            s = place - a[near]
             x = np.einsum("ki,ki->k", s, p) / det
-            q = np.cross(s, u)
             y = q @ direction / det
             distance = np.einsum("ki,ki->k", v, q) / det
             # a front face has a positive determinant: the ray leaves through the others
             hit = (det < 0.0) & (x >= -1e-9) & (y >= -1e-9) & (x + y <= 1.0 + 1e-9)
-            hit &= distance > 1e-6 * self._radii[near]
+            hit &= distance > 1e-6 * flat.radii[near]
         if not hit.any():
             return None
         best = near[hit][np.argmin(distance[hit])]
-        return float(distance[hit].min()), int(best // 4)
+        return float(distance[hit].min()), int(flat.faces[best])
 
     @cached_property
-    def _middles(self) -> Floats:
-        return np.asarray(self.sub.mean(axis=1))
+    def _flat(self) -> _Flat:
+        """Flat triangles: one of a face with straight edges, four of a curved one."""
+        curved = self.curved.any(axis=1)
+        parts = self.sub.reshape(-1, 4, 3, 3)[curved].reshape(-1, 3, 3)
+        straight = self.points[self.faces[~curved, :3]]
+        triangles = np.concatenate([straight, parts])
+        faces = np.concatenate([np.flatnonzero(~curved), np.repeat(np.flatnonzero(curved), 4)])
+        middles = triangles.mean(axis=1)
+        radii = np.linalg.norm(triangles - middles[:, None], axis=2).max(axis=1) * (1.0 + 1e-6)
+        return _Flat(triangles, faces, middles, (middles**2).sum(axis=1), radii)
 
     @cached_property
-    def _squares(self) -> Floats:
-        return np.asarray((self._middles**2).sum(axis=1))
-
-    @cached_property
-    def _radii(self) -> Floats:
-        away = np.linalg.norm(self.sub - self._middles[:, None], axis=2).max(axis=1)
-        return np.asarray(away * (1.0 + 1e-6))
+    def curved(self) -> Mask:
+        """(k, 3) whether a midside node lies off the middle of its edge."""
+        a, b = self.points[self.faces[:, :3]], self.points[np.roll(self.faces[:, :3], -1, axis=1)]
+        off = np.linalg.norm(self.points[self.faces[:, 3:]] - 0.5 * (a + b), axis=2)
+        return np.asarray(off > STRAIGHT * np.linalg.norm(b - a, axis=2))
 
     def around(self, point: SurfacePoint) -> Ints:
         """Triangles at a point: those of the node that it is, else of its triangle's corners."""

@@ -43,7 +43,7 @@ def plate(radius: float = 33.0, thickness: float = 2.0) -> None:
 
 
 def bracket() -> None:
-    """An L of 2 and 3 mm walls with fillets of 4 and 6 mm, open at its sides; foot at z = 0."""
+    """An L of 2 and 3 mm walls with a fillet of 4 mm; its foot at z = 0."""
     occ = gmsh.model.occ
     foot = occ.addBox(0, 0, 0, 30, 20, 3)
     back = occ.addBox(0, 0, 0, 2, 20, 25)
@@ -52,9 +52,38 @@ def bracket() -> None:
     inner = next(
         tag
         for _, tag in gmsh.model.getEntities(1)
-        if np.allclose(gmsh.model.occ.getCenterOfMass(1, tag), (2, 10, 3), atol=1e-6)
+        if np.allclose(occ.getCenterOfMass(1, tag), (2, 10, 3), atol=1e-6)
     )
     occ.fillet([body[1]], [inner], [4.0])
+
+
+def write_mesh(
+    path: Path,
+    build: Callable[[], object],
+    size: float,
+    order: int = 2,
+    surfaces: dict[str, list[int]] | None = None,
+) -> Path:
+    """Mesh what ``build`` adds to gmsh's OCC model (mm): the volume "all", named surfaces."""
+    start_gmsh()
+    try:
+        build()
+        gmsh.model.occ.synchronize()
+        volumes = [tag for _, tag in gmsh.model.getEntities(3)]
+        gmsh.model.addPhysicalGroup(3, volumes, name="all")
+        for name, faces in (surfaces or {}).items():
+            gmsh.model.addPhysicalGroup(2, faces, name=name)
+        gmsh.option.setNumber("Mesh.MeshSizeMin", size)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+        gmsh.option.setNumber("Mesh.ElementOrder", order)
+        gmsh.model.mesh.generate(3)
+        gmsh.write(str(path))
+    finally:
+        gmsh.finalize()
+    return path
+
+
+PLATE_FACES = {"rim": [1], "top": [2], "bottom": [3]}
 
 
 def document(path: Path, outer: object, **changes: Any) -> dict[str, Any]:

@@ -1,0 +1,238 @@
+"""The mesh of a body from a CAD part: against closed forms of volume, curvature, wall."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import gmsh
+import meshio
+import numpy as np
+import pytest
+
+from fem_reference.body.files import gmsh_session
+from fem_reference.body.mesh_file import Meshed, groups_of, meshed
+from fem_reference.body.part import coarse_skin, load
+from fem_reference.body.scene import parse_body_scene
+from fem_reference.body.sizing import chosen_sizes, walls
+from fem_reference.body.tets import volume
+from fem_reference.common.errors import SceneError
+from fem_reference.solid.mesh import EDGES
+from fem_reference.tests.bodies import bracket, document, name_faces, plate, run_mesh, write_cad
+from fem_reference.tests.program import run_program
+
+
+@pytest.fixture(scope="module")
+def plate_step(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = write_cad(tmp_path_factory.mktemp("cad") / "plate.step", plate)
+    return name_faces(path, ["rim", "top", "bottom"])
+
+
+def made(path: Path, outer: object, factor: float = 4.0, **changes: Any) -> Meshed:
+    return meshed(parse_body_scene(document(path, outer, **changes)), factor)
+
+
+def outer_of(result: Meshed) -> dict[str, Any]:
+    found = result.contacts["outer"]
+    assert found is not None
+    return found
+
+
+def test_the_plate_is_meshed_with_its_rim_fixed(plate_step: Path, tmp_path: Path) -> None:
+    scene = document(plate_step, "top", inner=[0.0, 0.0, 0.0], fixed=["rim"])
+    done = run_mesh(tmp_path, scene, 2.0)
+    assert done.returncode == 0, done.stderr
+    assert not list(tmp_path.glob(".partial*"))
+    about = json.loads((tmp_path / "body.json").read_text(encoding="utf-8"))
+    assert about["sha256"] == hashlib.sha256((tmp_path / "body.vtu").read_bytes()).hexdigest()
+    grid = meshio.read(tmp_path / "body.vtu")
+    cells = grid.cells_dict["tetra10"]
+    assert 20_000 < about["dofs"] == 3 * len(grid.points) < 60_000
+    assert len(cells) == about["elements"] and about["min_quality"] > 0.05
+    exact = math.pi * 0.033**2 * 0.002
+    assert about["cad_volume"] == pytest.approx(exact, rel=1e-9)
+    assert about["volume"] == pytest.approx(exact, rel=1e-5)
+    # every node of the rim, midside nodes of curved edges too, and no other
+    radius = np.hypot(grid.points[:, 0], grid.points[:, 1])
+    assert np.array_equal(grid.point_data["fixed"] == 1, radius > 0.033 * (1.0 - 1e-7))
+    assert about["fixed_nodes"] == np.count_nonzero(grid.point_data["fixed"])
+    for node, (a, b) in enumerate(EDGES, start=4):
+        middle = 0.5 * (grid.points[cells[:, a]] + grid.points[cells[:, b]])
+        off = np.linalg.norm(grid.points[cells[:, node]] - middle, axis=1)
+        assert off.max() < 0.1 * about["largest_element"]
+    corners = grid.points[np.unique(cells[:, :4])]
+    for name, z, up in (("outer", 0.002, 1.0), ("inner", 0.0, -1.0)):
+        contact = about["contacts"][name]
+        assert np.allclose(contact["point"], (0.0, 0.0, z), atol=1e-12)
+        assert np.linalg.norm(corners - contact["point"], axis=1).min() < 1e-12
+        assert contact["distance"] < 1e-12
+        assert np.allclose(contact["normal"], (0.0, 0.0, up), atol=1e-12)
+        assert np.allclose(contact["curvatures"], 0.0) and contact["curvature_source"] == "cad"
+        assert contact["wall"] == pytest.approx(0.002, rel=1e-9) and contact["layers"] >= 2
+        assert contact["edge_distance"] == pytest.approx(0.033, rel=1e-5)
+        # twice 0.12 of the wall
+        assert contact["element_size"] == pytest.approx(0.48e-3, rel=0.25)
+
+
+def test_a_mesh_is_the_same_every_time(plate_step: Path) -> None:
+    first, again = (made(plate_step, "top", fixed=["rim"]) for _ in range(2))
+    assert np.array_equal(first.body.points, again.body.points)
+    assert np.array_equal(first.body.cells, again.body.cells)
+
+
+def sphere() -> None:
+    gmsh.model.occ.addSphere(0, 0, 0, 5)
+
+
+def cylinder() -> None:
+    gmsh.model.occ.addCylinder(0, 0, 0, 0, 0, 30, 5)
+
+
+def torus() -> None:
+    gmsh.model.occ.addTorus(0, 0, 0, 10, 2)
+
+
+def tube() -> None:
+    outer = gmsh.model.occ.addCylinder(0, 0, 0, 0, 0, 20, 8)
+    bore = gmsh.model.occ.addCylinder(0, 0, 0, 0, 0, 20, 5)
+    gmsh.model.occ.cut([(3, outer)], [(3, bore)])
+
+
+@pytest.mark.parametrize(
+    ("build", "at", "normal", "curvatures", "wall"),
+    [
+        (sphere, (0.003, 0.0, 0.004), (0.6, 0.0, 0.8), (200.0, 200.0), 0.01),
+        (sphere, (0.0, 0.0, 0.005), (0.0, 0.0, 1.0), (200.0, 200.0), 0.01),
+        (cylinder, (0.0, 0.005, 0.015), (0.0, 1.0, 0.0), (200.0, 0.0), 0.01),
+        (cylinder, (0.005, 0.0, 0.015), (1.0, 0.0, 0.0), (200.0, 0.0), 0.01),
+        (torus, (0.0, 0.008, 0.0), (0.0, -1.0, 0.0), (500.0, -125.0), 0.004),
+        (torus, (0.0, 0.012, 0.0), (0.0, 1.0, 0.0), (500.0, 1.0 / 0.012), 0.004),
+        (tube, (-0.005, 0.0, 0.01), (1.0, 0.0, 0.0), (0.0, -200.0), 0.003),
+    ],
+)
+def test_normal_curvature_and_wall_are_those_of_the_closed_form(
+    tmp_path: Path,
+    build: Callable[[], None],
+    at: tuple[float, float, float],
+    normal: tuple[float, float, float],
+    curvatures: tuple[float, float],
+    wall: float,
+) -> None:
+    result = made(write_cad(tmp_path / "part.step", build), list(at), 2.0)
+    contact = outer_of(result)
+    assert np.allclose(contact["point"], at, atol=1e-9)
+    assert np.allclose(contact["normal"], normal, atol=1e-4)
+    assert np.allclose(contact["curvatures"], curvatures, rtol=1e-6, atol=1e-6)
+    assert contact["wall"] == pytest.approx(wall, rel=0.03)
+    first, second = np.array(contact["directions"])
+    assert abs(first @ second) < 1e-9 and abs(first @ normal) < 1e-4
+    if build is cylinder:
+        # no curvature along the axis
+        assert abs(second[2]) == pytest.approx(1.0)
+    if build is sphere:
+        assert contact["edge_distance"] is None
+        assert volume(result.body.points, result.body.cells) == pytest.approx(
+            4.0 / 3.0 * math.pi * 0.005**3, rel=5e-3
+        )
+
+
+def test_a_contact_in_a_fillet_is_concave(tmp_path: Path) -> None:
+    path = write_cad(tmp_path / "bracket.step", bracket)
+    turn = 0.004 * (1.0 - math.sqrt(0.5))
+    result = made(path, [0.002 + turn, 0.01, 0.003 + turn], fixed=[[0.015, 0.01, 0.0]])
+    contact = outer_of(result)
+    assert np.allclose(contact["normal"], (math.sqrt(0.5), 0.0, math.sqrt(0.5)), atol=1e-6)
+    assert np.allclose(contact["curvatures"], (0.0, -250.0), atol=1e-6)
+    # the fillet's smooth face goes on in the walls beside it: the sides of the bracket are its edge
+    assert contact["edge_distance"] == pytest.approx(0.01, rel=1e-3)
+    assert np.array_equal(result.fixed, np.abs(result.body.points[:, 2]) < 1e-9)
+
+
+def stepped() -> None:
+    thin = gmsh.model.occ.addBox(0, 0, 0, 40, 20, 2)
+    thick = gmsh.model.occ.addBox(0, 0, 0, 12, 20, 12)
+    gmsh.model.occ.fuse([(3, thin)], [(3, thick)])
+
+
+def test_walls_drive_the_sizes(tmp_path: Path) -> None:
+    path = write_cad(tmp_path / "stepped.step", stepped)
+    with gmsh_session():
+        skin, _ = coarse_skin(load(path, None))
+        found = walls(skin)
+        sizes = chosen_sizes(found, [], None)
+        bounded = chosen_sizes(found, [], 1.0)
+        coarser = chosen_sizes(found, [], 0.5)
+    top = (np.abs(found.places[:, 2] - 2.0) < 1e-6) & (found.places[:, 0] > 13.0)
+    assert np.allclose(found.thickness[top], 2.0)
+    thin, thick = sizes.at(np.array([[30.0, 10.0, 2.0], [6.0, 10.0, 12.0]])) / sizes.scale
+    assert thin == pytest.approx(0.68 * 2.0, rel=0.02)
+    assert 2.0 * thin < thick <= 0.68 * 12.0
+    assert np.allclose(bounded.far, 1.0)
+    # a wish that would take too many unknowns is made coarser
+    assert coarser.scale > 1.0 and coarser.dofs == pytest.approx(250_000, rel=0.07)
+
+
+def test_a_rod_is_as_thick_as_its_diameter_where_its_end_is_struck(tmp_path: Path) -> None:
+    path = write_cad(tmp_path / "rod.step", cylinder)
+    result = made(path, [0.0, 0.0, 0.03], 2.0)
+    end = outer_of(result)
+    assert end["wall"] == pytest.approx(0.03) and end["layers"] > 3
+    # twice 0.12 of the diameter and of what the elements grow over a radius
+    assert 0.24 * 0.01 * 0.8 < end["element_size"] < 0.24 * 0.01 * 1.4
+
+
+def test_circles_near_an_edge_get_smaller_elements(plate_step: Path) -> None:
+    near = outer_of(made(plate_step, [0.0325, 0.0, 0.002], 1.0))
+    assert near["edge_distance"] == pytest.approx(0.5e-3, rel=1e-4)
+    assert near["element_size"] == pytest.approx(0.28 * 0.5e-3, rel=0.25)
+    with pytest.raises(SceneError, match=r"outer.at is 0.0001 m away from the edge"):
+        made(plate_step, [0.0329, 0.0, 0.002])
+
+
+def test_a_step_file_knows_its_unit_and_its_faces(plate_step: Path, tmp_path: Path) -> None:
+    done = run_program("groups", plate_step)
+    assert done.returncode == 0, done.stderr
+    about = json.loads(done.stdout)
+    assert about["source"] == "cad" and about["unit"] == 1e-3
+    assert np.allclose(about["bounding_box"], [[-0.033, -0.033, 0], [0.033, 0.033, 0.002]])
+    rim, top, *_ = about["groups"]
+    assert (rim["name"], rim["kind"], rim["count"], rim["shape"]) == (
+        "rim",
+        "surface",
+        1,
+        "cylinder",
+    )
+    assert top["area"] == pytest.approx(math.pi * 0.033**2)
+    assert np.allclose(top["centre"], (0.0, 0.0, 0.002))
+    # the same numbers, said to be centimetres
+    text = plate_step.read_text(encoding="utf-8").replace(".MILLI.", ".CENTI.")
+    other = tmp_path / "centi.step"
+    other.write_text(text, encoding="utf-8")
+    assert groups_of(other, None)["bounding_box"][1][0] == pytest.approx(0.33)
+    assert groups_of(other, 1e-3)["bounding_box"][1][0] == pytest.approx(0.033)
+    assert groups_of(other, 1e-3)["groups"][0]["name"] == "rim"
+
+
+def test_names_of_faces_are_those_of_the_right_faces(tmp_path: Path) -> None:
+    path = write_cad(tmp_path / "bracket.step", bracket)
+    text = path.read_text(encoding="utf-8")
+    # in the file a face's surface says where it is: name each plane by its first point
+    count = text.count("ADVANCED_FACE(''")
+    name_faces(path, [f"f{k}" for k in range(count)])
+    by_name = {each["name"]: each for each in groups_of(path, None)["groups"]}
+    assert [f"f{k}" for k in range(count)] == list(by_name)[:count]
+    fillet = [each for each in by_name.values() if each.get("shape") == "cylinder"]
+    assert len(fillet) == 1
+    assert fillet[0]["area"] == pytest.approx(math.pi / 2 * 0.004 * 0.02, rel=1e-6)
+
+
+def test_brep_counts_in_the_unit_given(tmp_path: Path) -> None:
+    path = write_cad(tmp_path / "plate.brep", plate)
+    assert groups_of(path, 1e-3)["bounding_box"][1][0] == pytest.approx(0.033)
+    with pytest.raises(SceneError, match="millimetres taken for metres"):
+        made(path, [0.0, 0.0, 0.002])
+    assert made(path, [0.0, 0.0, 0.002], unit=1e-3).body.cells.size > 0
