@@ -149,7 +149,7 @@ def main() -> int:
 
 def _failed(arguments: argparse.Namespace, error: RunError) -> int:
     """Say why a command failed; the exit status."""
-    if arguments.command == "solve":
+    if arguments.command in ("solve", "mesh"):
         Progress().error(str(error))
     print(f"error: {error}", file=sys.stderr)
     return error.exit_status

@@ -19,7 +19,7 @@ def _mesh(document: Any, arguments: argparse.Namespace) -> None:
 
 
 def _metres(text: str) -> float:
-    units = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254}
+    units = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "cm": 1e-2, "in": 0.0254}
     try:
         value = units[text] if text in units else float(text)
     except ValueError:
@@ -33,13 +33,18 @@ def _metres(text: str) -> float:
 
 def _groups_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, help="CAD part or mesh of a body")
+    parser.add_argument("--out", type=Path, help="file to write instead of standard output")
     parser.add_argument("--unit", type=_metres, help="of the file's numbers: mm, m, um, in, 0.001")
 
 
 def _groups(arguments: argparse.Namespace) -> None:
     from .mesh_file import groups_of
 
-    print(json.dumps(groups_of(arguments.file, arguments.unit), allow_nan=False))
+    text = json.dumps(groups_of(arguments.file, arguments.unit), allow_nan=False)
+    if arguments.out:
+        arguments.out.write_text(text, encoding="utf-8")
+    else:
+        print(text)
 
 
 COMMANDS = {"mesh": _mesh}

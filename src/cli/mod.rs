@@ -238,6 +238,19 @@ fn with_help(error: clap::Error, arguments: &[OsString]) -> clap::Error {
     }
 }
 
+/// `file`, if a page can be written to it.
+///
+/// # Errors
+/// [`Error::Usage`] if it does not end in `.html`.
+fn html_file<'f>(option: &str, file: &'f std::path::Path) -> Result<&'f std::path::Path> {
+    match file.extension().is_some_and(|kind| kind == "html") {
+        true => Ok(file),
+        false => {
+            Err(Error::Usage(format!("{option} {}: a page is a file that ends in .html", file.display())))
+        }
+    }
+}
+
 /// The scene that `argument` names, and its file; `-` is standard input, which can be read only once.
 fn read_scene(argument: &str) -> Result<(PathBuf, Scene)> {
     if argument == "-" {

@@ -5,6 +5,7 @@ use super::schema::FILE;
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::kinds::{self, KINDS, Starter};
+use crate::reference;
 use crate::scene::Scene;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -17,6 +18,12 @@ pub struct Arguments {
     /// Kind of the scene
     #[arg(long, default_value = KINDS[0].name(), value_parser = starters())]
     kind: Starter,
+    /// CAD or mesh file of a body that is struck: writes a scene with the groups and faces found in it
+    #[arg(long, value_name = "FILE", conflicts_with = "kind")]
+    from: Option<PathBuf>,
+    /// Unit of length of that file: m, mm, um, cm, in [default: STEP's own, else m]
+    #[arg(long, requires = "from")]
+    unit: Option<String>,
     /// File to write [default: NAME.toml]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -40,7 +47,14 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         let hint = "choose another name, or another file with --out";
         return Err(Error::Usage(message).hint([hint.into()]));
     }
-    let text = format!("#:schema ./{FILE}\n{}", arguments.kind.text.replacen("NAME", name, 1));
+    let text = match &arguments.from {
+        Some(body) => {
+            let groups = reference::body_groups(body, arguments.unit.as_deref())?;
+            kinds::general_impact::scene_of_body(&file, body, arguments.unit.as_deref(), &groups)
+        }
+        None => arguments.kind.text.to_owned(),
+    };
+    let text = format!("#:schema ./{FILE}\n{}", text.replacen("NAME", name, 1));
     // a name that can't be one is refused as it would be in a file
     let scene = Scene::parse(&file.display().to_string(), &text)?;
     write_file(&file.with_file_name(FILE), crate::kinds::schema().to_string().as_bytes())?;

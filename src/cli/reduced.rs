@@ -2,7 +2,7 @@
 
 use super::requested_model::{self, ModelRequest};
 use super::{Context, JsonArgument, kinds, progress};
-use crate::error::{Error, ExitStatus, Result};
+use crate::error::{ExitStatus, Result};
 use crate::file::write_file;
 use crate::format::{prefixed, with_unit};
 use crate::kinds::SharedBodies;
@@ -33,11 +33,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         // refused before anything is computed
         history_format(file)?;
     }
-    if let Some(file) =
-        arguments.page.as_ref().filter(|file| file.extension().is_none_or(|kind| kind != "html"))
-    {
-        return Err(Error::Usage(format!("--page {}: a page is a file that ends in .html", file.display())));
-    }
+    arguments.page.as_ref().map(|file| super::html_file("--page", file)).transpose()?;
     let (_, scene) = super::read_scene(&arguments.scene)?;
     if let (None, Some(model)) = (arguments.request.model, scene.reduced.model) {
         context.note(format_args!(
@@ -135,12 +131,21 @@ pub fn table(summary: &Summary) -> String {
     for (name, value, unit) in patches.chain(speeds).chain(bender).chain(stack).chain(losses) {
         lines.push(format!("  {name:<24} {:>14}", with_unit(value, prefixed(unit, value), 6)));
     }
+    let frequencies = summary.frequencies.iter().enumerate();
+    lines.extend(frequencies.map(|(k, hertz)| {
+        format!(
+            "  {:<24} {:>14}",
+            format!("frequency {}", k + 1),
+            with_unit(*hertz, prefixed("Hz", *hertz), 6)
+        )
+    }));
     lines.extend(series(&summary.impacts));
     lines.extend(after_the_impact(summary));
     let errors = [
         ("energy_residual", summary.energy_residual),
         ("momentum_residual", summary.momentum_residual),
         ("truncation_error", summary.truncation_error),
+        ("mesh_error", summary.mesh_error),
     ];
     lines
         .extend(errors.iter().filter_map(|(name, error)| Some(format!("  {name:<24} {:>14.1e}", (*error)?))));

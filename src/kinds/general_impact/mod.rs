@@ -1,7 +1,9 @@
 //! Impacts without a plate: an outer body strikes a wall or another body.
 
 mod features;
+mod from_file;
 
+pub use from_file::scene_of_body;
 pub use impactcheck_physics::kinds::general_impact::*;
 
 use super::{ClosedForm, Feature, Form, Starter, Use};
@@ -10,7 +12,7 @@ use crate::scene::{Model, Scene};
 
 impl super::Kind for Kind {
     fn serves(&self, purpose: Use) -> bool {
-        purpose == Use::Samples
+        matches!(purpose, Use::Samples | Use::MeshFile)
     }
 
     fn starter(&self) -> Starter {

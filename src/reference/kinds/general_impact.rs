@@ -3,7 +3,7 @@
 use super::{Refused, mesh_with, run};
 use crate::body::cache::Cache;
 use crate::interrupt::Scratch;
-use crate::kinds::general_impact::{MeshRequest, set_mesher};
+use crate::kinds::general_impact::{GeneralImpact, MeshRequest, set_mesher};
 use crate::reference::python;
 use crate::scene::hash::sha256_hex;
 use crate::{Error, Result};
@@ -48,6 +48,18 @@ pub fn body_mesh(request: &MeshRequest) -> Result<PathBuf> {
         std::fs::rename(made.with_extension(extension), path.with_extension(extension)).map_err(writing)?;
     }
     Ok(path)
+}
+
+/// Meshes the body of `setup` into `out`; its description.
+pub(super) fn make_body_mesh(setup: &GeneralImpact, size_factor: f64, out: &Path) -> Result<Value> {
+    let body = setup.body().ok_or_else(|| {
+        Error::Usage("the scene has no [body]: a mesh is made of a body from a file alone".into())
+    })?;
+    let request = body.mesh_request(size_factor);
+    mesh_with(&python::mesher()?, &request.document, &[], size_factor, out).map_err(refused)?;
+    let text =
+        std::fs::read_to_string(out.with_extension("json")).map_err(|e| Error::io("reading", out, e))?;
+    serde_json::from_str(&text).map_err(|e| Error::Internal(format!("the mesh's description: {e}")))
 }
 
 /// The groups, sets and faces of a file with its bounding box, as `fem_reference` lists them; `unit` is its unit of length.

@@ -8,11 +8,48 @@ pub use general_impact::{body_groups, body_mesh, mesh_bodies};
 pub use plate_impact::plate_modes;
 pub use seal_seat::{SeatMeshInfo, make_seat_mesh, mesh_to_follow, seat_mesh, seat_mesh_with, seat_meshes};
 
-use super::{child, python};
+use super::{Resolution, child, python};
 use crate::error::ExitStatus;
 use crate::interrupt::Scratch;
+use crate::scene::Scene;
+use crate::{Error, Result};
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Meshes the body or the seat of `scene` into `out` (`.vtu`), with a description (`.json`) that is returned; `size_factor` enlarges all
+/// elements.
+///
+/// # Errors
+/// [`Error::Usage`] if `out` is no `.vtu` file or a file of the user's would be replaced, else those of the mesher.
+pub fn make_mesh(scene: &Scene, resolution: Resolution, size_factor: f64, out: &Path) -> Result<Value> {
+    let internal = |e: serde_json::Error| Error::Internal(format!("the mesh's description: {e}"));
+    match scene.general_impact() {
+        Ok(setup) => general_impact::make_body_mesh(setup, size_factor, &replaceable(out)?),
+        Err(_) => {
+            let info = make_seat_mesh(&python::python()?, scene, resolution, size_factor, out)?;
+            serde_json::to_value(info).map_err(internal)
+        }
+    }
+}
+
+/// The whole path of the mesh file `out`, unless a file lies there or beside it that is no mesh of this program.
+fn replaceable(out: &Path) -> Result<PathBuf> {
+    if out.extension().is_none_or(|e| e != "vtu") {
+        return Err(Error::Usage(format!("{} has to end in .vtu", out.display())));
+    }
+    let text = std::fs::read_to_string(out.with_extension("json")).ok();
+    let described = text.and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    let is_described = described.is_some_and(|described| described["sha256"].is_string());
+    let there = [out.to_path_buf(), out.with_extension("json")].into_iter().find(|file| file.exists());
+    match there {
+        Some(file) if !is_described => Err(Error::Usage(format!(
+            "{} exists and is no mesh of this program with its description; choose another --out (a .vtu file; the \
+             description goes into the .json file of the same name)",
+            file.display()
+        ))),
+        _ => std::path::absolute(out).map_err(|e| Error::io("finding", out, e)),
+    }
+}
 
 /// Why `fem_reference` made nothing.
 struct Refused {

@@ -1,6 +1,6 @@
 //! Meshes of seal seats: files made by `fem_reference`, each with a description that says what it is a mesh of.
 
-use super::mesh_with;
+use super::{mesh_with, replaceable};
 use crate::body::cache::Cache;
 use crate::interrupt::Scratch;
 use crate::kinds::seal_seat::SeatMesh;
@@ -136,19 +136,6 @@ fn described(path: &Path) -> Option<SeatMeshInfo> {
     serde_json::from_str(&text).ok()
 }
 
-/// Refuses to put a mesh at `path` where a file lies that is no mesh of this program, or no description of one.
-fn require_replaceable(path: &Path) -> Result<()> {
-    let there = [path.to_path_buf(), path.with_extension("json")].into_iter().find(|file| file.exists());
-    match there {
-        Some(file) if described(path).is_none() => Err(Error::Usage(format!(
-            "{} exists and is no mesh of this program with its description; choose another --out (a .vtu file; the \
-             description goes into the .json file of the same name)",
-            file.display()
-        ))),
-        _ => Ok(()),
-    }
-}
-
 /// The description of the mesh file at `path`, if both are there and belong together.
 fn intact(path: &Path) -> Option<SeatMeshInfo> {
     let info = described(path)?;
@@ -170,11 +157,7 @@ pub fn make_seat_mesh(
     out: &Path,
 ) -> Result<SeatMeshInfo> {
     scene.seal_seat()?;
-    if out.extension().is_none_or(|e| e != "vtu") {
-        return Err(Error::Usage(format!("{} has to end in .vtu", out.display())));
-    }
-    require_replaceable(out)?;
-    let out = std::path::absolute(out).map_err(|e| Error::io("finding", out, e))?;
+    let out = replaceable(out)?;
     let document = identity::solver_document(scene, resolution)?;
     let options = ["--resolution", resolution.first()];
     let failed = |why: &str| Error::Solver(format!("meshing the seat of `{}`: {why}", scene.name));

@@ -12,6 +12,7 @@ use crate::report::figure::geometry::PanelOf;
 use crate::report::page::section::Section;
 use crate::report::summary_column::SummaryColumn;
 use crate::report::{Attachments, SceneReport, Theme, figure};
+use crate::result::Summary;
 use crate::scene::Scene;
 use maud::{Markup, html};
 
@@ -62,6 +63,11 @@ pub(super) trait Presentation: Sync {
     /// The scene in numbers: what, and what it measures.
     fn measures(&self, _: &Scene) -> Vec<(String, String)> {
         Vec::new()
+    }
+
+    /// A body from a mesh in 3D, with the stress under the force peak of a result; nothing of other scenes.
+    fn body(&self, _: &Scene, _summary: Option<&Summary>) -> Markup {
+        html! {}
     }
 
     /// What only this kind shows, behind the models' sections.

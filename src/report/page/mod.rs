@@ -9,7 +9,7 @@ pub(crate) mod index;
 mod interactive;
 pub(crate) mod model;
 pub(crate) mod moves;
-mod page_data;
+pub(super) mod page_data;
 mod prose;
 pub(crate) mod scene;
 pub(crate) mod section;

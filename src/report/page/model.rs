@@ -3,6 +3,7 @@
 use crate::format::{model_name, prefixed, with_unit};
 use crate::plot::{ChartPanel, chart};
 use crate::report::figure::curves::curves_chart;
+use crate::report::kinds;
 use crate::report::page::facts::facts;
 use crate::report::page::html::{named, page, scrolled};
 use crate::report::page::section::flight::flight_html;
@@ -11,18 +12,31 @@ use crate::result::{History, Outcome, Summary};
 use crate::scene::Scene;
 use maud::{Markup, PreEscaped, html};
 
+/// The page of the meshed body of `scene` alone.
+pub fn body_page(scene: &Scene) -> String {
+    let title = format!("{}: mesh", scene.name);
+    let body = html! {
+        h1 { (title) }
+        p.soft { (scene.description) }
+        (kinds::of(scene).body(scene, None))
+    };
+    page(&format!("{title} · impactcheck"), &[], &body, &html! {})
+}
+
 /// The page of the model of `scene` that has the `outcome`.
 pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
     let Outcome { summary, history } = outcome;
     let model = format!("model {}", model_name(summary.model.as_deref().unwrap_or("?"), summary.modes));
     let title = format!("{}: {model}", scene.name);
     let landing = flight_html(scene, &[summary], None);
+    let shown = kinds::of(scene).body(scene, Some(summary));
     let body = html! {
         h1 { (title) }
         p.soft { (scene.description) }
         p.note { "Reduced model without a reference." }
         @if !summary.warnings.is_empty() { ul { @for warning in &summary.warnings { li { (warning) } } } }
         (scrolled("Results", &quantities(summary)))
+        @if !shown.0.is_empty() { h2 { "The body" } (shown) }
         h2 { "Curves" }
         figure { (PreEscaped(curves(&title, history))) }
         @if summary.impacts.len() > 1 { h2 { "Impacts in series" } figure { (PreEscaped(series(&title, summary))) } }

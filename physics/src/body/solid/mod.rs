@@ -16,9 +16,9 @@ mod struck;
 mod surface;
 mod view;
 
+pub use mesh::TetMesh;
 #[cfg(test)]
 pub(crate) use mesh::boxes;
-pub use mesh::TetMesh;
 pub use meshed::{BodyMesh, ContactInfo};
 pub use pressure::SurfacePoint;
 pub use struck::{CIRCLES, StruckPoint, StruckSolid, frequencies};

@@ -120,7 +120,7 @@ mod tests {
         let place = |[x, y, z]: [f64; 3]| {
             let below = size[2] - z;
             let z = if graded { -below * below / size[2] } else { -below };
-            [grade(x, 0.5 * size[0]) , grade(y, 0.5 * size[1]), z]
+            [grade(x, 0.5 * size[0]), grade(y, 0.5 * size[1]), z]
         };
         let mesh = boxes(size, bricks, 2, place);
         // midside nodes in the middle of the graded edges
@@ -259,7 +259,8 @@ mod tests {
         let expected = arm.powi(3) / (3.0 * e * inertia) + 1.2 * arm / (shear_modulus * area);
         let modes: f64 =
             system.elastic().map(|k| (system.approach[0][k] / system.oscillators[k].omega).powi(2)).sum();
-        let local = system.residual.expect("a residual").displacement(&system.laws, [1.0, 0.0], [1e-9, 0.0]).0[0];
+        let local =
+            system.residual.expect("a residual").displacement(&system.laws, [1.0, 0.0], [1e-9, 0.0]).0[0];
         assert_relative_eq!(modes + local, expected, max_relative = 0.01);
     }
 

@@ -1,5 +1,6 @@
 //! How an impact on a wall, an elastic body or another body is shown.
 
+mod body;
 mod picture;
 
 use super::Presentation;
@@ -8,6 +9,7 @@ use crate::report::figure::geometry::PanelOf;
 use crate::report::figure::scene::MOTION;
 use crate::report::page::section::{self, Section};
 use crate::report::summary_column::SummaryColumn;
+use crate::result::Summary;
 use crate::scene::Scene;
 use maud::{Markup, html};
 
@@ -53,8 +55,14 @@ impl Presentation for Direct {
         scene.general_impact().map_or_else(|_| Vec::new(), picture::measures)
     }
 
+    fn body(&self, scene: &Scene, summary: Option<&Summary>) -> Markup {
+        body::body_figure(scene, summary.and_then(|summary| summary.value("outer_force_peak")))
+    }
+
     fn sections(&self, report: &SceneReport) -> Vec<Section> {
+        let model = report.comparison.models.first().map(|model| &model.summary);
         vec![
+            Section::new("body", "The body", self.body(&report.scene, model)),
             Section::new("impacts", "Impacts in series", section::impacts::impacts_html(report)),
             Section::new("budget", "Error budget", section::budget::budget_html(&report.comparison)),
         ]

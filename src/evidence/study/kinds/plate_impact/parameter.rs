@@ -52,7 +52,7 @@ pub fn scene(name: &str, setup: PlateImpact) -> Scene {
         description: format!("An impact of the study {name}"),
         setup: setup.into(),
         run: RunSettings { end_time: None },
-        reduced: ReducedSettings { model: None, modes: None },
+        reduced: ReducedSettings { model: None, modes: None, frequencies: None },
         reference: ReferenceSettings {
             geometry: Geometry::Axisymmetric,
             elements_per_contact_radius: Some(12.0),
