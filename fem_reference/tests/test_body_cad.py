@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -177,10 +178,11 @@ def test_walls_drive_the_sizes(tmp_path: Path) -> None:
 
 
 def test_a_rod_is_as_thick_as_its_diameter_where_its_end_is_struck(tmp_path: Path) -> None:
-    path = write_cad(tmp_path / "rod.step", cylinder)
-    result = made(path, [0.0, 0.0, 0.03], 2.0)
-    end = outer_of(result)
-    assert end["wall"] == pytest.approx(0.03) and end["layers"] > 3
+    path = write_cad(
+        tmp_path / "rod.step", lambda: gmsh.model.occ.addCylinder(0, 0, 0, 0, 0, 100, 5)
+    )
+    end = outer_of(made(path, [0.0, 0.0, 0.1], 2.0))
+    assert end["wall"] == pytest.approx(0.1) and end["layers"] > 10
     # twice 0.12 of the diameter and of what the elements grow over a radius
     assert 0.24 * 0.01 * 0.8 < end["element_size"] < 0.24 * 0.01 * 1.4
 
@@ -219,12 +221,28 @@ def test_a_step_file_knows_its_unit_and_its_faces(plate_step: Path, tmp_path: Pa
 
 def test_names_of_faces_are_those_of_the_right_faces(tmp_path: Path) -> None:
     path = write_cad(tmp_path / "bracket.step", bracket)
-    text = path.read_text(encoding="utf-8")
-    # in the file a face's surface says where it is: name each plane by its first point
-    count = text.count("ADVANCED_FACE(''")
+    count = path.read_text(encoding="utf-8").count("ADVANCED_FACE(''")
     name_faces(path, [f"f{k}" for k in range(count)])
     by_name = {each["name"]: each for each in groups_of(path, None)["groups"]}
-    assert [f"f{k}" for k in range(count)] == list(by_name)[:count]
+    records = dict(re.findall(r"#(\d+) = ([^;]*);", path.read_text(encoding="utf-8")))
+
+    def vector(reference: str) -> list[float]:
+        numbers = re.search(r"\(([^()]*)\)\)", records[reference])
+        assert numbers is not None
+        return [float(each) for each in numbers[1].split(",")]
+
+    planes = 0
+    for body in records.values():
+        face = re.match(r"ADVANCED_FACE\('(f\d+)',.*#(\d+),", body, re.DOTALL)
+        if face is None or not records[face[2]].startswith("PLANE"):
+            continue
+        placement = re.findall(r"#(\d+)", records[face[2]])[0]
+        point, normal, _ = (vector(each) for each in re.findall(r"#(\d+)", records[placement]))
+        # the centre of the face of that name lies in the plane of the file
+        away = np.array(by_name[face[1]]["centre"]) / 1e-3 - point
+        assert abs(away @ normal) < 1e-6
+        planes += 1
+    assert planes == 8
     fillet = [each for each in by_name.values() if each.get("shape") == "cylinder"]
     assert len(fillet) == 1
     assert fillet[0]["area"] == pytest.approx(math.pi / 2 * 0.004 * 0.02, rel=1e-6)
