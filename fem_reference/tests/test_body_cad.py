@@ -173,7 +173,7 @@ def test_walls_drive_the_sizes(tmp_path: Path) -> None:
     assert thin == pytest.approx(0.68 * 2.0, rel=0.02)
     assert 2.0 * thin < thick <= 0.68 * 12.0
     assert np.allclose(bounded.far, 1.0)
-    # a wish that would take too many unknowns is made coarser
+    # sizes that would take too many unknowns are made larger
     assert coarser.scale > 1.0 and coarser.dofs == pytest.approx(250_000, rel=0.07)
 
 

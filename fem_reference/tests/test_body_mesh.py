@@ -268,7 +268,7 @@ def test_bulk_data_of_nastran(tmp_path: Path, kind: str, large: bool) -> None:
     ("text", "message"),
     [
         ("SOL 101\nBEGIN BULK\n", "has no GRID points"),
-        ("BEGIN BULK\nGRID,1,5,0.,0.,0.\n", "GRID 1: it stands in coordinate system 5"),
+        ("BEGIN BULK\nGRID,1,5,0.,0.,0.\n", "GRID 1: it uses coordinate system 5"),
         ("GRID,1,,0.,0.,0.\nCTETRA,1,1,1,1,1\n", "CTETRA 1: has 3 nodes; 4 or 10 are read"),
         ("INCLUDE 'more.bdf'\n", "files included are not read"),
     ],
