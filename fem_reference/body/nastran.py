@@ -48,7 +48,7 @@ def read_nastran(path: Path) -> MeshFile:
             if name == "GRID":
                 if fields[1] not in ("", "0"):
                     raise ValueError(
-                        f"it stands in coordinate system {fields[1]}; export the basic system"
+                        f"it uses coordinate system {fields[1]}; export the basic system"
                     )
                 grid[int(fields[0])] = [_real(each) for each in fields[2:5]]
             elif name in SOLID_CARDS:

@@ -38,7 +38,7 @@ class Part:
     unit: float
     """Metres per number of the file."""
     groups: list[Group]
-    """Faces and the solid; a face's tags stand in `elements`."""
+    """Faces and the solid; a face's tags are in `elements`."""
 
     def box(self) -> list[list[float]]:
         """The bounding box, m."""

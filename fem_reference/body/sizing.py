@@ -1,7 +1,7 @@
 """Element sizes for a CAD part: by its walls, by the contacts, by the fixed edges.
 
 Lengths are in the unit of gmsh's model. The wall's thickness is found by rays through a first,
-coarse mesh of the surface; the sizes that follow from it stand on a grid that gmsh interpolates.
+coarse mesh of the surface; gmsh interpolates the sizes that follow from it on a grid.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from pathlib import Path
 
 import gmsh
 import numpy as np
+from scipy.integrate import trapezoid
 from scipy.spatial import cKDTree
 from scipy.spatial.distance import cdist
 
@@ -122,11 +123,11 @@ def graded(places: Floats, radii: Floats, sizes: Floats) -> Floats:
     return found
 
 
-def wished_sizes(found: Walls, largest: float | None) -> Floats:
+def requested_sizes(found: Walls, largest: float | None) -> Floats:
     """(k,) sizes that the walls, and a largest size, ask for at the places of the surface."""
-    wished = np.minimum(WALL_SHARE * found.thickness, largest or math.inf)
-    wished = np.minimum(wished, WALL_SHARE * np.ptp(found.places, axis=0).max())
-    return graded(found.places, found.radii(), wished)
+    requested = np.minimum(WALL_SHARE * found.thickness, largest or math.inf)
+    requested = np.minimum(requested, WALL_SHARE * np.ptp(found.places, axis=0).max())
+    return graded(found.places, found.radii(), requested)
 
 
 def wall_at(found: Walls, place: Floats, along_normal: float) -> float:
@@ -134,14 +135,16 @@ def wall_at(found: Walls, place: Floats, along_normal: float) -> float:
 
     A rod that is struck at its end is as thick as its diameter, not as long as it is.
     """
-    near = Sizes(found.places, found.radii(), wished_sizes(found, None), (), 1.0, 0.0)
+    near = Sizes(found.places, found.radii(), requested_sizes(found, None), (), 1.0, 0.0)
     return min(along_normal, float(near.at(place[None])[0]) / WALL_SHARE)
 
 
 def chosen_sizes(found: Walls, contacts: Sequence[ContactSize], largest: float | None) -> Sizes:
     """Sizes everywhere, scaled so that the number of unknowns stays within bounds."""
-    far = wished_sizes(found, largest)
-    thick = np.minimum(found.thickness, found.thickness[np.isfinite(found.thickness)].max())
+    far = requested_sizes(found, largest)
+    finite = found.thickness[np.isfinite(found.thickness)]
+    thickest = finite.max() if finite.size else np.ptp(found.places, axis=0).max()
+    thick = np.minimum(found.thickness, thickest)
     cubes = float((0.5 * found.areas * thick / far**3).sum())
     near = [int(np.argmin(np.linalg.norm(found.places - each.place, axis=1))) for each in contacts]
 
@@ -165,7 +168,7 @@ def _cubes_at(size: float, wall: float, far: float) -> float:
     radius = np.linspace(0.0, CIRCLES * size + max(far - size, 0.0) / GROWTH, 400)
     there = np.minimum(size + GROWTH * np.maximum(0.0, radius - CIRCLES * size), far)
     shell = 2.0 * math.pi * radius * np.minimum(radius, wall)
-    return float(np.trapezoid(shell * (1.0 / there**3 - 1.0 / far**3), radius))
+    return float(trapezoid(shell * (1.0 / there**3 - 1.0 / far**3), radius))
 
 
 def set_sizes(

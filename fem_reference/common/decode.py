@@ -73,11 +73,11 @@ def member(node: Any, path: str, key: str) -> Any:
 
 
 class _Decoder:
-    """Notes, by the path of an object, the keys that it may have, and what stays as it is."""
+    """Notes, by the path of an object, the keys that it may have, and what it leaves unchecked."""
 
     def __init__(self) -> None:
         self.known: defaultdict[str, list[str]] = defaultdict(list)
-        self.whole: set[str] = set()
+        self.unchecked: set[str] = set()
 
     def object(self, kind: type[Any], node: Any, path: str) -> Any:
         """A dataclass from the object at ``path``."""
@@ -121,7 +121,7 @@ class _Decoder:
             element = get_args(hint)[0]
             return tuple(self.value(element, each, f"{path}[{k}]") for k, each in enumerate(node))
         if hint is object:
-            self.whole.add(path)
+            self.unchecked.add(path)
             return node
         return node if get_origin(hint) is dict else _scalar(hint, node, path)
 
@@ -138,7 +138,7 @@ class _Decoder:
         if isinstance(node, list):
             for k, each in enumerate(node):
                 self.refuse_unknown(each, f"{path}[{k}]")
-        elif isinstance(node, dict) and path not in self.whole:
+        elif isinstance(node, dict) and path not in self.unchecked:
             known = dict.fromkeys(self.known[path])
             for key, each in node.items():
                 if key not in known:

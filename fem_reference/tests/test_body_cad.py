@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -73,7 +74,7 @@ def test_the_plate_is_meshed_with_its_rim_fixed(plate_step: Path, tmp_path: Path
         assert np.allclose(contact["normal"], (0.0, 0.0, up), atol=1e-12)
         assert np.allclose(contact["curvatures"], 0.0) and contact["curvature_source"] == "cad"
         assert contact["wall"] == pytest.approx(0.002, rel=1e-9) and contact["layers"] >= 2
-        assert contact["edge_distance"] == pytest.approx(0.033, rel=1e-5)
+        assert contact["edge_distance"] == pytest.approx(0.033, rel=1e-4)
         # twice 0.12 of the wall
         assert contact["element_size"] == pytest.approx(0.48e-3, rel=0.25)
 
@@ -172,15 +173,16 @@ def test_walls_drive_the_sizes(tmp_path: Path) -> None:
     assert thin == pytest.approx(0.68 * 2.0, rel=0.02)
     assert 2.0 * thin < thick <= 0.68 * 12.0
     assert np.allclose(bounded.far, 1.0)
-    # a wish that would take too many unknowns is made coarser
+    # sizes that would take too many unknowns are made larger
     assert coarser.scale > 1.0 and coarser.dofs == pytest.approx(250_000, rel=0.07)
 
 
 def test_a_rod_is_as_thick_as_its_diameter_where_its_end_is_struck(tmp_path: Path) -> None:
-    path = write_cad(tmp_path / "rod.step", cylinder)
-    result = made(path, [0.0, 0.0, 0.03], 2.0)
-    end = outer_of(result)
-    assert end["wall"] == pytest.approx(0.03) and end["layers"] > 3
+    path = write_cad(
+        tmp_path / "rod.step", lambda: gmsh.model.occ.addCylinder(0, 0, 0, 0, 0, 100, 5)
+    )
+    end = outer_of(made(path, [0.0, 0.0, 0.1], 2.0))
+    assert end["wall"] == pytest.approx(0.1) and end["layers"] > 10
     # twice 0.12 of the diameter and of what the elements grow over a radius
     assert 0.24 * 0.01 * 0.8 < end["element_size"] < 0.24 * 0.01 * 1.4
 
@@ -219,12 +221,28 @@ def test_a_step_file_knows_its_unit_and_its_faces(plate_step: Path, tmp_path: Pa
 
 def test_names_of_faces_are_those_of_the_right_faces(tmp_path: Path) -> None:
     path = write_cad(tmp_path / "bracket.step", bracket)
-    text = path.read_text(encoding="utf-8")
-    # in the file a face's surface says where it is: name each plane by its first point
-    count = text.count("ADVANCED_FACE(''")
+    count = path.read_text(encoding="utf-8").count("ADVANCED_FACE(''")
     name_faces(path, [f"f{k}" for k in range(count)])
     by_name = {each["name"]: each for each in groups_of(path, None)["groups"]}
-    assert [f"f{k}" for k in range(count)] == list(by_name)[:count]
+    records = dict(re.findall(r"#(\d+) = ([^;]*);", path.read_text(encoding="utf-8")))
+
+    def vector(reference: str) -> list[float]:
+        numbers = re.search(r"\(([^()]*)\)\)", records[reference])
+        assert numbers is not None
+        return [float(each) for each in numbers[1].split(",")]
+
+    planes = 0
+    for body in records.values():
+        face = re.match(r"ADVANCED_FACE\('(f\d+)',.*#(\d+),", body, re.DOTALL)
+        if face is None or not records[face[2]].startswith("PLANE"):
+            continue
+        placement = re.findall(r"#(\d+)", records[face[2]])[0]
+        point, normal, _ = (vector(each) for each in re.findall(r"#(\d+)", records[placement]))
+        # the centre of the face of that name lies in the plane of the file
+        away = np.array(by_name[face[1]]["centre"]) / 1e-3 - point
+        assert abs(away @ normal) < 1e-6
+        planes += 1
+    assert planes == 8
     fillet = [each for each in by_name.values() if each.get("shape") == "cylinder"]
     assert len(fillet) == 1
     assert fillet[0]["area"] == pytest.approx(math.pi / 2 * 0.004 * 0.02, rel=1e-6)

@@ -13,12 +13,11 @@ import meshio
 import numpy as np
 import pytest
 
-from fem_reference.body.abaqus import FACES, cell_of, read_abaqus
+from fem_reference.body.abaqus import cell_of, read_abaqus
 from fem_reference.body.body import Body, body_of, fixed_mask
 from fem_reference.body.cells import HEX_EDGES, HEX_FACES, SOLIDS
 from fem_reference.body.files import read_mesh
 from fem_reference.body.mesh_file import Meshed, meshed, write_body_mesh
-from fem_reference.body.nastran import ORDER
 from fem_reference.body.scene import parse_body_scene
 from fem_reference.body.source import MeshFile
 from fem_reference.body.tets import qualities, volume
@@ -87,10 +86,13 @@ def test_cells_split_into_tetrahedra_that_match(kind: str) -> None:
     corners = SOLIDS[kind].corners
     used = np.unique(np.concatenate([nodes[:, :corners] for _, nodes in source.solids]))
     assert np.unique(body.cells[:, :4]).size == used.size
+    # all nodes, those put on new edges too, lie where the map puts the middles of the flat cube
+    x, y, z = body.points.T
     if curved:
-        assert body.skin.points[body.skin.faces].shape[1] == 6
-        inside = bent(np.array([[0.5, 0.5, 0.5]]))
-        assert np.linalg.norm(body.points - inside, axis=1).min() < 1e-12
+        x = x - 0.3 * y**2
+        z = z - 0.2 * x**2
+    sixteenths = 16.0 * np.stack([x, y, z])
+    assert np.abs(sixteenths - np.round(sixteenths)).max() < 1e-9
 
 
 @pytest.mark.parametrize("shuffled", [1, 2, 3])
@@ -106,6 +108,14 @@ ABAQUS = {
     "C3D20R": "hexahedron20", "C3D20": "hexahedron20", "C3D6": "wedge", "C3D15": "wedge15",
     "C3D10MH": "tetra10", "C3D4H": "tetra", "C3D10": "tetra10", "C3D8": "hexahedron",
 }  # fmt: skip
+
+
+FACES_OF_THE_MANUAL = {
+    4: ("123", "142", "243", "341"),
+    6: ("123", "465", "1452", "2563", "3641"),
+    8: ("1234", "5876", "1562", "2673", "3784", "4851"),
+}
+"""Nodes of the faces S1, S2, ... by the number of corners (Abaqus Analysis User's Guide)."""
 
 
 def deck(kind: str, source: MeshFile) -> str:
@@ -127,18 +137,20 @@ def deck(kind: str, source: MeshFile) -> str:
     lines += ["*elset, elset=BOTH", "Left, RIGHT", "*NSET, NSET=Base"]
     base = np.flatnonzero(np.abs(source.points[:, 2]) < 1e-9)
     lines += [", ".join(str(10 * (k + 1)) for k in base[i : i + 8]) for i in range(0, len(base), 8)]
-    lines += ["*NSET, NSET=twice", "base, BASE", "*Surface, type=ELEMENT, name=foot"]
-    lines += [*_foot(kind, source), "*Solid Section, elset=both, material=steel"]
-    return "\n".join(lines) + "\n"
+    lines += ["*NSET, NSET=twice", "base, BASE"]
+    for axis, side in itertools.product(range(3), range(2)):
+        lines += [f"*Surface, type=ELEMENT, name=side{axis}{side}", *_side(source, axis, side)]
+    return "\n".join([*lines, "*Solid Section, elset=both, material=steel"]) + "\n"
 
 
-def _foot(kind: str, source: MeshFile) -> list[str]:
-    """Faces at z = 0 by Abaqus's numbers of faces."""
+def _side(source: MeshFile, axis: int, side: int) -> list[str]:
+    """Faces on a side of the cube by Abaqus's numbers of faces."""
     ((cell, nodes),) = source.solids
     found = []
     for k, row in enumerate(nodes, start=1):
-        for face, corners in enumerate(FACES[SOLIDS[cell].corners], start=1):
-            if np.allclose(source.points[row[list(corners)], 2], 0.0):
+        for face, numbers in enumerate(FACES_OF_THE_MANUAL[SOLIDS[cell].corners], start=1):
+            corners = [int(number) - 1 for number in numbers]
+            if np.allclose(source.points[row[corners], axis], side):
                 found.append(f"{k}, S{face}")
     return found
 
@@ -158,10 +170,12 @@ def test_a_deck_gives_its_cells_and_sets(tmp_path: Path, kind: str) -> None:
     assert kinds["LEFT"] == kinds["RIGHT"] == ("elements", count // 2)
     assert kinds["BOTH"] == kinds["SOLID"] == ("elements", count)
     assert kinds["EVERYTHING"] == ("nodes", len(source.points)) and kinds["TWICE"] == kinds["BASE"]
-    # the surface's faces and the set's nodes fix the same: all at z = 0
-    ground = np.abs(body.points[:, 2]) < 1e-9
-    for name in ("foot", "Base"):
-        assert np.array_equal(fixed_mask(body, [name]), ground)
+    # a surface's faces and a set's nodes fix what lies on that side of the cube
+    on_side = np.abs(body.points[:, :, None] - np.arange(2)) < 1e-9
+    assert np.array_equal(fixed_mask(body, ["Base"]), on_side[:, 2, 0])
+    for axis, side in itertools.product(range(3), range(2)):
+        fixed = fixed_mask(body, [f"Side{axis}{side}"])
+        assert np.array_equal(fixed, on_side[:, axis, side])
 
 
 def test_names_of_elements_are_read_with_their_variants() -> None:
@@ -196,6 +210,24 @@ def refusal_of(path: Path) -> str:
     return str(caught.value)
 
 
+EDGES_OF_THE_MANUAL = {
+    "tetra10": "12 23 13 14 24 34",
+    "pyramid13": "12 23 34 41 15 25 35 45",
+    "wedge15": "12 23 31 14 25 36 45 56 64",
+    "hexahedron20": "12 23 34 41 15 26 37 48 56 67 78 85",
+}
+"""Edges of the midside nodes in their order (NX Nastran Quick Reference Guide)."""
+
+
+def _nastran_order(kind: str) -> list[int]:
+    """Positions, in VTK's order, of the nodes of a card."""
+    cell = SOLIDS[kind]
+    place = {frozenset(ends): cell.corners + k for k, ends in enumerate(cell.middles)}
+    edges = EDGES_OF_THE_MANUAL.get(kind, "").split()
+    pairs = [frozenset((int(edge[0]) - 1, int(edge[1]) - 1)) for edge in edges]
+    return [*range(cell.corners), *(place[pair] for pair in pairs)]
+
+
 def real(number: float) -> str:
     return f"{number:.9E}"
 
@@ -214,9 +246,7 @@ def test_bulk_data_of_nastran(tmp_path: Path, kind: str, large: bool) -> None:
         else:
             lines += [f"GRID,{k},,{','.join(map(real, place))}"]
     for k, row in enumerate(nodes, start=1):
-        back = np.empty_like(row)
-        back[list(ORDER.get(kind, range(row.size)))] = row
-        fields = [k, 7, *(back + 1)]
+        fields = [k, 7, *(row[_nastran_order(kind)] + 1)]
         for i in range(0, len(fields), 8):
             head = card if i == 0 else "+"
             lines.append(f"{head:8s}" + "".join(f"{each:8d}" for each in fields[i : i + 8]))
@@ -238,7 +268,7 @@ def test_bulk_data_of_nastran(tmp_path: Path, kind: str, large: bool) -> None:
     ("text", "message"),
     [
         ("SOL 101\nBEGIN BULK\n", "has no GRID points"),
-        ("BEGIN BULK\nGRID,1,5,0.,0.,0.\n", "GRID 1: it stands in coordinate system 5"),
+        ("BEGIN BULK\nGRID,1,5,0.,0.,0.\n", "GRID 1: it uses coordinate system 5"),
         ("GRID,1,,0.,0.,0.\nCTETRA,1,1,1,1,1\n", "CTETRA 1: has 3 nodes; 4 or 10 are read"),
         ("INCLUDE 'more.bdf'\n", "files included are not read"),
     ],
