@@ -8,6 +8,7 @@ use crate::format::{prefixed, with_unit};
 use crate::kinds::SharedBodies;
 use crate::report::{self, history_format};
 use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Sideways, Summary};
+use crate::scene::Scene;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -48,11 +49,15 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         write_file(file, report::model_page(&scene, &outcome).as_bytes())?;
         context.note(format_args!("page in {}", file.display()));
     }
-    finish(context, arguments, &outcome)
+    finish(context, arguments, (&scene, &outcome))
 }
 
 /// Writes the history, if it is asked for, and prints warnings and summary.
-fn finish(context: &Context, arguments: &Arguments, outcome: &Outcome) -> Result<ExitStatus> {
+fn finish(
+    context: &Context,
+    arguments: &Arguments,
+    (scene, outcome): (&Scene, &Outcome),
+) -> Result<ExitStatus> {
     let Outcome { summary, history } = outcome;
     if let Some(path) = &arguments.history {
         write_file(path, &history_format(path)?.bytes(history)?)?;
@@ -61,18 +66,21 @@ fn finish(context: &Context, arguments: &Arguments, outcome: &Outcome) -> Result
     for warning in &summary.warnings {
         context.note(format_args!("warning: {warning}"));
     }
-    arguments.json.print(summary, table)?;
+    arguments
+        .json
+        .print(summary, |summary| table(summary, |name| crate::kinds::of(scene).has(scene, name)))?;
     Ok(ExitStatus::Pass)
 }
 
-/// The summary as lines of name, value and unit.
-pub fn table(summary: &Summary) -> String {
+/// The summary as lines of name, value and unit; of the quantities those that the scene has.
+pub fn table(summary: &Summary, has: impl Fn(&str) -> bool) -> String {
     let who = match (&summary.model, summary.modes) {
         (Some(model), Some(modes)) => format!("model {model}, {modes} modes"),
         _ => "reference".to_owned(),
     };
     let mut lines = vec![format!("{} ({who})", summary.scene)];
-    for &Quantity { name, unit, value, .. } in summary.quantities.iter() {
+    for &Quantity { name, unit, value, .. } in summary.quantities.iter().filter(|quantity| has(quantity.name))
+    {
         let Some(value) = value else {
             lines.push(format!("  {name:<24} {:>14}", "not determined"));
             continue;

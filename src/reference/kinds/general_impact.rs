@@ -69,7 +69,8 @@ pub(super) fn make_body_mesh(setup: &GeneralImpact, size_factor: f64, out: &Path
 pub fn body_groups(file: &Path, unit: Option<&str>) -> Result<Value> {
     let python = python::mesher()?;
     let mut command = python::fem_reference(&python)?;
-    command.arg("groups").arg(file);
+    // it runs in the project's folder
+    command.arg("groups").arg(std::path::absolute(file).map_err(|e| Error::io("finding", file, e))?);
     command.args(unit.into_iter().flat_map(|unit| ["--unit", unit]));
     let folder = std::env::temp_dir();
     let folder =

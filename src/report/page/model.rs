@@ -1,6 +1,7 @@
 //! The page of one reduced model alone: what a scene without a reference can show.
 
 use crate::format::{model_name, prefixed, with_unit};
+use crate::kinds::of as kind_of;
 use crate::plot::{ChartPanel, chart};
 use crate::report::figure::curves::curves_chart;
 use crate::report::kinds;
@@ -35,7 +36,7 @@ pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
         p.soft { (scene.description) }
         p.note { "Reduced model without a reference." }
         @if !summary.warnings.is_empty() { ul { @for warning in &summary.warnings { li { (warning) } } } }
-        (scrolled("Results", &quantities(summary)))
+        (scrolled("Results", &quantities(scene, summary)))
         @if !shown.0.is_empty() { h2 { "The body" } (shown) }
         h2 { "Curves" }
         figure { (PreEscaped(curves(&title, history))) }
@@ -47,11 +48,12 @@ pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
     page(&format!("{title} · impactcheck"), &[], &body, &html! {})
 }
 
-fn quantities(summary: &Summary) -> Markup {
+fn quantities(scene: &Scene, summary: &Summary) -> Markup {
+    let own = || summary.quantities.iter().filter(|quantity| kind_of(scene).has(scene, quantity.name));
     let shown = |value: Option<f64>, unit| {
         value.map_or_else(|| "not determined".to_owned(), |value| with_unit(value, prefixed(unit, value), 5))
     };
-    html! { table { tbody { @for quantity in summary.quantities.iter() { tr {
+    html! { table { tbody { @for quantity in own() { tr {
         th scope="row" { (named(quantity.name)) }
         td { (shown(quantity.value, quantity.unit)) }
     } } } } }

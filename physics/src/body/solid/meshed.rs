@@ -36,11 +36,14 @@ pub struct ContactInfo {
     pub curvature_source: String,
     /// Size of the elements there in m.
     pub element_size: f64,
-    /// Thickness of the wall in m along the normal.
+    /// Thickness of the wall in m along the normal; infinite if it is not known.
+    #[serde(deserialize_with = "or_infinite")]
     pub wall: f64,
-    /// Elements through the wall.
+    /// Elements through the wall; infinite if that is not known.
+    #[serde(deserialize_with = "or_infinite")]
     pub layers: f64,
-    /// Distance in m to the nearest edge of the face.
+    /// Distance in m to the nearest edge of the face; infinite where it has none.
+    #[serde(deserialize_with = "or_infinite")]
     pub edge_distance: f64,
 }
 
@@ -56,6 +59,10 @@ pub struct BodyMeshInfo {
 pub struct Contacts {
     outer: ContactInfo,
     inner: Option<ContactInfo>,
+}
+
+fn or_infinite<'de, D: serde::Deserializer<'de>>(value: D) -> std::result::Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(value)?.unwrap_or(f64::INFINITY))
 }
 
 impl BodyMesh {

@@ -3,12 +3,14 @@
 use super::body::{Body, mesh};
 use crate::body::ModalBody;
 use crate::body::cache::Cache;
+use crate::body::memo::MemoList;
 use crate::body::solid::{self, BodyMesh, BodyView, ContactInfo, StruckPoint, StruckSolid};
 use crate::contact::effective_radius;
 use crate::error::{Error, Result};
 use crate::scene::hash::sha256_hex;
 use serde_json::json;
 use std::path::Path;
+use std::sync::LazyLock;
 
 /// Number of the method that reduces bodies, part of every key: raise it when one comes out otherwise.
 const REVISION: u32 = 1;
@@ -34,12 +36,25 @@ pub(super) struct ElasticBody {
     pub(super) warnings: Vec<String>,
 }
 
+/// Bodies that this process has reduced, by what their meshes depend on and Poisson's ratio: a sweep over speeds, masses and moduli needs
+/// one.
+static REDUCED: LazyLock<MemoList<(String, f64, ElasticBody)>> = LazyLock::new(MemoList::default);
+
 impl ElasticBody {
     /// Of `body`.
     ///
     /// # Errors
     /// Those of the mesher, [`Error::Solver`] for a mesh that is of no use.
     pub(super) fn new(body: &Body) -> Result<Self> {
+        let (key, ratio) = (body.mesh_request(1.0).key, body.material.poisson_ratio);
+        let found = REDUCED.find_or(
+            |(own, own_ratio, _)| *own == key && *own_ratio == ratio,
+            || Ok((key.clone(), ratio, Self::build(body)?)),
+        )?;
+        Ok(found.2.clone())
+    }
+
+    fn build(body: &Body) -> Result<Self> {
         let path = mesh(&body.mesh_request(1.0))?;
         let contacts = BodyMesh::contacts(&path)?;
         let fine = reduced(body, &path, &contacts)?;
