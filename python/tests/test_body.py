@@ -1,0 +1,216 @@
+"""Bodies from CAD and mesh files, from the command line: accuracy, faults, pages."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+PROGRAM = os.environ.get("IMPACTCHECK_PROGRAM", "")
+MESHER = os.environ.get("IMPACTCHECK_PYTHON", "")
+
+pytestmark = pytest.mark.skipif(not (PROGRAM and MESHER), reason="needs the program and gmsh")
+
+STEEL = """
+[materials.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio  = 0.3
+density        = "7780 kg/m^3"
+"""
+
+PLATE = """
+import gmsh
+gmsh.initialize()
+gmsh.option.setNumber("General.Terminal", 0)
+plate = gmsh.model.occ.addCylinder(0, 0, -1, 0, 0, 2, 33)
+gmsh.model.occ.synchronize()
+gmsh.write("plate.step")
+gmsh.finalize()
+"""
+
+BLOCK = """
+import gmsh
+gmsh.initialize()
+gmsh.option.setNumber("General.Terminal", 0)
+block = gmsh.model.occ.addBox(0, 0, 0, 10, 10, 5)
+gmsh.model.occ.synchronize()
+gmsh.model.addPhysicalGroup(3, [block], name="block")
+gmsh.model.addPhysicalGroup(2, [5], name="base")
+gmsh.option.setNumber("Mesh.MeshSizeMax", 2)
+gmsh.model.mesh.generate(2)
+gmsh.write("surface.msh")
+gmsh.model.mesh.generate(3)
+gmsh.write("block.msh")
+gmsh.finalize()
+"""
+
+
+def made(folder: Path, script: str) -> None:
+    """Runs a script of gmsh in ``folder``."""
+    done = subprocess.run(
+        [MESHER, "-c", script], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def run(folder: Path, *arguments: str, status: int = 0) -> tuple[str, str]:
+    """Standard output and error of the program; its exit status has to be ``status``."""
+    environment = {**os.environ, "IMPACTCHECK_CACHE": str(folder / "cache")}
+    done = subprocess.run(
+        [PROGRAM, *arguments],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == status, f"{arguments}: {done.returncode} {done.stdout}{done.stderr}"
+    return done.stdout, done.stderr
+
+
+def scene(
+    folder: Path,
+    body: str,
+    outer: str = 'at = ["0 mm", "0 mm", "1 mm"]',
+    inner: str = "",
+    radius: str = "10 mm",
+    speed: str = "550 mm/s",
+) -> str:
+    """Writes ``part.toml``; its name."""
+    behind = f'[inner]\nkind = "sphere"\nradius = "{radius}"\nmaterial = "steel"\n{inner}\n'
+    text = f"""
+name = "part"
+kind = "impact"
+{STEEL}
+[body]
+material = "steel"
+{body}
+[outer]
+kind     = "sphere"
+radius   = "{radius}"
+material = "steel"
+speed    = "{speed}"
+{outer}
+{behind if inner else ""}
+"""
+    (folder / "part.toml").write_text(text)
+    return "part.toml"
+
+
+@pytest.fixture(scope="module")
+def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with Table 1's plate as STEP."""
+    folder = tmp_path_factory.mktemp("plate")
+    made(folder, PLATE)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def block(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a block as a mesh of linear tetrahedra, and its surface alone."""
+    folder = tmp_path_factory.mktemp("block")
+    made(folder, BLOCK)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("radius", "speed", "shipped"),
+    [("10 mm", "550 mm/s", "scaled-plate-r10"), ("6.35 mm", "437 mm/s", "scaled-plate-r6.35")],
+)
+def test_a_plate_given_as_step_is_the_circular_plate(
+    plate: Path, radius: str, speed: str, shipped: str
+) -> None:
+    """Model C of the plate impact, an independent axisymmetric discretisation, is the truth."""
+    body = 'file = "plate.step"\nfixed = [["33 mm", "0 mm", "0 mm"]]'
+    name = scene(
+        plate, body, inner='at = ["0 mm", "0 mm", "-1 mm"]', radius=radius, speed=speed
+    )
+    ours = json.loads(run(plate, "-q", "reduced", name, "--json")[0])
+    truth = json.loads(run(plate, "-q", "reduced", shipped, "--model", "C", "--json")[0])
+    errors = {
+        key: abs(ours[key] / truth[key] - 1.0)
+        for key in ("efficiency", "outer_force_peak", "inner_force_peak")
+    }
+    assert errors["efficiency"] < 0.005, errors
+    assert max(errors.values()) < 0.006, errors
+    # what is stated is neither too small nor of another size
+    assert ours["mesh_error"] < 0.02
+    assert max(errors.values()) < 3.0 * ours["mesh_error"], (errors, ours["mesh_error"])
+    assert ours["solve_seconds"] < 1.0
+    assert abs(ours["first_frequency"] / truth["first_frequency"] - 1.0) < 0.005
+
+
+def test_a_mesh_of_somebody_s_own_is_struck_seen_and_swept(block: Path) -> None:
+    """Linear tetrahedra in mm, a named face; frequencies, page, sweep, uncertainty, restitution."""
+    body = 'file = "block.msh"\nunit = "mm"\nfixed = ["base"]'
+    at = 'at = ["5 mm", "5 mm", "0 mm"]'
+    name = scene(block, body, outer=at, radius="2 mm", speed="100 mm/s")
+    # gmsh's face 5 of a box is its lower one: struck there it is held, which has no residual
+    said = run(block, "reduced", name, status=12)[1]
+    assert "contact" in said or "held" in said, said
+    name = scene(
+        block, body, outer='at = ["5 mm", "5 mm", "5 mm"]', radius="2 mm", speed="100 mm/s"
+    )
+    with (block / name).open("a") as file:
+        file.write("\n[reduced]\nfrequencies = 3\n")
+    summary = json.loads(run(block, "-q", "reduced", name, "--page", "part.html", "--json")[0])
+    assert len(summary["frequencies"]) == 3
+    assert sorted(summary["frequencies"]) == summary["frequencies"]
+    assert 0.9 < summary["outer_restitution"] < 1.0
+    assert summary["inner_force_peak"] is None
+    page = (block / "part.html").read_text()
+    assert 'class="body-view"' in page and "mode 1" in page
+    assert len(page) < 1_500_000
+    swept = run(block, "-q", "sweep", name, "--vary", "outer.speed=50mm/s..200mm/s:8", "--json")[0]
+    assert swept.count("outer_force_peak") >= 1
+    run(block, "-q", "mesh", name, "--out", "part.vtu", "--page", "mesh.html")
+    assert (block / "part.json").exists() and (block / "mesh.html").exists()
+
+
+def test_a_scene_is_begun_from_a_file(plate: Path) -> None:
+    """Its faces are listed, and it runs as it stands but for the mesh, which is not made here."""
+    (plate / "cad").mkdir(exist_ok=True)
+    run(plate, "new", "cad/from-cad", "--from", "plate.step")
+    text = (plate / "cad" / "from-cad.toml").read_text()
+    assert "bounding box 66 x 66 x 2 mm" in text and '"face 1"' in text
+
+
+FAULTS = {
+    "no such file": ('file = "none.msh"', None, "none.msh"),
+    "an ending that nobody knows": ('file = "part.toml"', None, ".toml"),
+    "a surface without volume": ('file = "surface.msh"\nunit = "mm"', None, "surface"),
+    "millimetres as metres": ('file = "block.msh"', None, "unit"),
+    "a missing group": ('file = "block.msh"\nunit = "mm"\nfixed = ["bas"]', None, "'base'"),
+    "a point inside": (
+        'file = "block.msh"\nunit = "mm"',
+        'at = ["5 mm", "5 mm", "2.5 mm"]',
+        "outer.at",
+    ),
+    "a point far away": (
+        'file = "block.msh"\nunit = "mm"',
+        'at = ["50 mm", "5 mm", "5 mm"]',
+        "outer.at",
+    ),
+    "a place without a body's": ('file = "block.msh"\nunit = "mm"', "", "outer.at"),
+    "a unit that there is not": ('file = "block.msh"\nunit = "inch"', None, "body.unit"),
+    "no file at all": ('unit = "mm"', None, "body.file"),
+    "two coordinates": ('file = "block.msh"\nunit = "mm"', 'at = ["5 mm", "5 mm"]', "outer.at"),
+    "an empty file": ('file = "empty.step"', None, "empty.step"),
+    "no STEP inside": ('file = "text.step"', None, "text.step"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_is_a_sentence_with_status_3_and_leaves_nothing(block: Path, fault: str) -> None:
+    """Field or file is named; no mesh is left half-written."""
+    body, outer, named = FAULTS[fault]
+    (block / "empty.step").write_text("")
+    (block / "text.step").write_text("this is no part\n")
+    top = 'at = ["5 mm", "5 mm", "5 mm"]'
+    name = scene(block, body, outer=top if outer is None else outer, radius="2 mm")
+    said = run(block, "reduced", name, status=3)[1]
+    assert named in said, said
+    assert "Traceback" not in said, said
+    run(block, "mesh", name, "--out", "fault.vtu", status=3)
+    assert not list(block.glob("fault.*"))
