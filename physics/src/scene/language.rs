@@ -52,10 +52,10 @@ pub(crate) struct FileFault {
     pub(crate) help: &'static str,
 }
 
-/// Scenes that are read as those of another kind: those with one key and without another.
+/// Scenes that are read as those of another kind: those with some keys and without another.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Alias {
-    pub(crate) with: &'static str,
+    pub(crate) with: &'static [&'static str],
     pub(crate) without: &'static str,
     /// Name of the kind that they are read as.
     pub(crate) kind: &'static str,
@@ -63,7 +63,7 @@ pub(crate) struct Alias {
 
 impl Alias {
     fn is_meant(&self, root: &DeTable) -> bool {
-        root.contains_key(self.with) && !root.contains_key(self.without)
+        self.with.iter().all(|key| root.contains_key(*key)) && !root.contains_key(self.without)
     }
 }
 

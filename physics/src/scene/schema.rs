@@ -52,7 +52,7 @@ impl Grammar {
             let named =
                 |kind: &str| json!({ "properties": { "kind": { "const": kind } }, "required": ["kind"] });
             let meant = json!({
-                "allOf": [named(dialect.name), { "required": [alias.with], "not": { "required": [alias.without] } }],
+                "allOf": [named(dialect.name), { "required": alias.with, "not": { "required": [alias.without] } }],
             });
             if name == alias.kind {
                 rule["if"] = json!({ "anyOf": [named(&name), meant] });

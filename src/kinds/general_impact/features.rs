@@ -4,11 +4,12 @@ use crate::kinds::general_impact::{GeneralImpact, Struck, Wall};
 use crate::kinds::{Feature, Form};
 use crate::scene::{Scene, Shape};
 
-pub(super) static FEATURES: [Feature; 9] = [
+pub(super) static FEATURES: [Feature; 10] = [
     Feature::new("wall", |s| has(s, |i| wall(i).is_some_and(|wall| wall.material.is_some()))).by(Form::Hertz),
     Feature::new("rigid wall", |s| has(s, |i| wall(i).is_some_and(|wall| wall.material.is_none())))
         .by(Form::Hertz),
     Feature::new("two bodies without a plate", |s| has(s, |i| i.struck_inner().is_some())).by(Form::Hertz),
+    Feature::new("plate without an inner body", |s| has(s, |i| i.plate().is_some())),
     Feature::new("elastic body from a file", |s| {
         has(s, |i| i.body().is_some_and(|body| !body.fixed.is_empty()))
     }),

@@ -1,26 +1,33 @@
-//! An elastic body between the contacts of outer and inner body.
+//! An elastic body or a plate that the outer body strikes, and the inner body behind it if there is one.
 
 use super::Body;
 use super::elastic::ElasticBody;
 use super::scene::sphere_radius;
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
+use crate::body::continuum::{MeshOptions, cached};
 use crate::body::free_sphere::sphere_residual;
 use crate::contact::Hertz;
 use crate::dynamics::MovingBody;
 use crate::dynamics::system::System;
 use crate::error::Result;
-use crate::scene::{Inner, Material, Outer, Shape};
+use crate::scene::{DEFAULT_MODES, Edge, Inner, Material, Outer, Plate, Shape};
 use nalgebra::Vector3;
 
-/// The elastic body between the contacts.
+/// Blocks of Ritz vectors that are left out to see what modes change.
+const DROPPED: usize = 1;
+/// Smallest patch over the thickness of a plate that its mesh is made for.
+const SMALLEST_PATCH: f64 = 0.05;
+
+/// What the outer body strikes, if that is elastic.
 #[derive(Debug)]
 pub(super) struct Between {
-    pub(super) body: ElasticBody,
     /// The same impact on the body's coarser mesh.
     pub(super) coarse: Option<System>,
     /// Cosine of the angle between the direction of the outer contact and the inner one's, both along z: 1 on parallel faces.
     alignment: f64,
+    /// By how many modes less the error for want of modes is found.
+    pub(super) fewer: usize,
     /// Mass in kg; `None` if the body is held.
     free_mass: Option<f64>,
     pub(super) warnings: Vec<String>,
@@ -69,8 +76,32 @@ impl Between {
             coarse: coarse.map(join),
             alignment: normals.get(1).map_or(0.0, |inner| -normals[0].dot(inner)),
             free_mass: (!elastic.fine.rigid.is_empty()).then(|| body.material.density * elastic.fine.volume),
-            body: elastic,
+            fewer: 2 * DROPPED * elastic.contacts.len(),
             warnings,
+        };
+        Ok((system, between))
+    }
+
+    /// The system of `outer`, as the scene has it `given`, that strikes the centre of `plate`, model C's.
+    ///
+    /// # Errors
+    /// [`crate::Error::Solver`] if the plate's modes do not converge.
+    pub(super) fn of_plate(plate: &Plate, outer: MovingBody, given: &Outer) -> Result<(System, Self)> {
+        let law = Hertz::new(outer.tip_radius, &outer.material, &plate.material);
+        let hit = HertzImpact { mass: outer.mass, speed: outer.speed, stiffness: law.stiffness };
+        let patch =
+            law.contact_radius(hit.force_peak()).max(SMALLEST_PATCH * plate.thickness.min(plate.radius));
+        let body = cached::plate(plate, [patch; 2], DEFAULT_MODES, &MeshOptions::default())?;
+        let tip =
+            sphere_radius(&given.shape).map_or(0.0, |radius| sphere_residual(radius, &given.material, patch));
+        let slow = std::f64::consts::PI / hit.duration();
+        let system = System::on_body(outer, &body.modal_body(DEFAULT_MODES, slow), &plate.material, tip);
+        let between = Self {
+            coarse: None,
+            alignment: 0.0,
+            fewer: system.modes / 2,
+            free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
+            warnings: Vec::new(),
         };
         Ok((system, between))
     }
@@ -80,11 +111,6 @@ impl Between {
     pub(super) fn velocities(&self, outer: f64, inner: f64) -> [f64; 2] {
         let Some(mass) = self.free_mass else { return [0.0; 2] };
         [(inner * self.alignment - outer) / mass, (inner - outer * self.alignment) / mass]
-    }
-
-    /// Modes that the static solutions of all contacts, and so each further block of Ritz vectors, have.
-    pub(super) fn block(&self) -> usize {
-        2 * self.body.contacts.len()
     }
 }
 

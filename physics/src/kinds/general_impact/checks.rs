@@ -53,7 +53,7 @@ pub(super) fn checks(setup: &GeneralImpact, outcome: &Outcome) -> Vec<Statement>
 fn energy(setup: &GeneralImpact, summary: &Summary) -> Vec<Statement> {
     let mut found = Vec::new();
     let outer = summary.value("outer_velocity_final");
-    if setup.body().is_some() {
+    if setup.is_held().is_some() {
         return energy_between(setup, summary).into_iter().collect();
     }
     let inner = match setup.inner {
@@ -122,9 +122,9 @@ pub(super) fn shown(setup: &GeneralImpact, history: &History) -> Table {
     let inner = setup.inner.as_ref().and_then(|_| final_of("inner"));
     set("outer_velocity_final".into(), outer);
     set("inner_velocity_final".into(), inner);
-    let struck = match setup.body() {
+    let struck = match setup.is_held() {
         // how a free body moves is not among the curves
-        Some(body) => (!body.fixed.is_empty()).then_some(0.0),
+        Some(held) => held.then_some(0.0),
         None if setup.inner.is_some() => inner,
         None => Some(0.0),
     };

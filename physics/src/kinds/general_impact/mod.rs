@@ -1,4 +1,4 @@
-//! An outer body strikes a wall or another body: reduced model C, which has no modes here. With a plate between, see
+//! An outer body strikes a wall, an elastic body or plate, or another body: reduced model C. With a plate between outer and inner body, see
 //! [`super::plate_impact`].
 
 mod between;
@@ -54,14 +54,14 @@ impl super::Kind for Kind {
     fn model(&self, scene: &Scene, model: Model, modes: Option<usize>) -> Result<Box<dyn SeriesModel>> {
         if model != Model::C {
             return Err(Error::Usage(format!(
-                "model {model}: `{}` has no plate, and only model C does without one",
+                "model {model}: `{}` has model C only; A and B need a plate with an inner body behind it",
                 scene.name
             )));
         }
-        let has_modes = scene.general_impact()?.body().is_some();
+        let has_modes = scene.general_impact()?.is_held().is_some();
         if let Some(modes) = modes.filter(|_| !has_modes) {
             return Err(Error::Usage(format!(
-                "--modes {modes}: `{}` has no plate, so that its model has no modes",
+                "--modes {modes}: `{}` has neither plate nor body, so that its model has no modes",
                 scene.name
             )));
         }

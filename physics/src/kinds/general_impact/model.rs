@@ -9,7 +9,7 @@ use super::scene::sphere_radius;
 use super::{CURVES, GeneralImpact, ImpactQuantities, Kind, Struck};
 use crate::body::free_sphere::sphere_residual;
 use crate::dynamics::integration::{Converged, Integration, Options};
-use crate::dynamics::memory::{self, Memory, OnsetOfYield};
+use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, integrate};
 use crate::error::{Error, Result};
@@ -59,16 +59,13 @@ impl ContactModel {
             (Some(Struck::Body(body)), inner) => {
                 let elastic = ElasticBody::new(body)?;
                 let (system, found) = Between::joined(elastic, body, outer, &setup.outer, inner.as_ref())?;
-                let system = match modes {
-                    Some(modes) if modes > system.modes => {
-                        let most = system.modes;
-                        return Err(Error::Usage(format!("--modes {modes}: the body has {most} at most")));
-                    }
-                    Some(modes) => system.lowest(modes),
-                    None => system,
-                };
                 between = Some(found);
-                system
+                with_modes(system, modes)?
+            }
+            (Some(Struck::Plate(plate)), _) => {
+                let (system, found) = Between::of_plate(plate, outer, &setup.outer)?;
+                between = Some(found);
+                with_modes(system, modes)?
             }
             (None, Some(inner)) => {
                 let seen = Inner { speed: inner.speed - frame, gap: 0.0, ..inner.clone() };
@@ -77,7 +74,8 @@ impl ContactModel {
             (None, None) => return Err(Error::Internal("the outer body strikes nothing".into())),
         };
         let inner = setup.inner.as_ref().map_or(&*face, |inner| &inner.material);
-        let memory = Memory::new([&setup.outer.material, &face, inner], None, &system)?;
+        let memory =
+            Memory::new([&setup.outer.material, &face, inner], setup.plate().map(Bending::new), &system)?;
         let normal_share = given.outer.angle.cos().powi(2);
         Ok(Self { scene: scene.clone(), normal_share, system, frame, memory, between, setup: setup.clone() })
     }
@@ -165,7 +163,9 @@ impl ContactModel {
         if self.setup.outer.shape.is_mounted() || relaxes {
             return None;
         }
-        let onset = OnsetOfYield::new([&self.setup.outer.material, &face, &face], None, &self.system)?;
+        let inner = self.setup.inner.as_ref().map_or(&*face, |inner| &inner.material);
+        let materials = [&self.setup.outer.material, &*face, inner];
+        let onset = OnsetOfYield::new(materials, self.setup.plate().map(Bending::new), &self.system)?;
         let [closing, _] = self.with_impacts(|all| all.elastic_speeds(&onset, options));
         let outer = closing.map(|speed| speed - self.frame).filter(|speed| *speed > 0.0);
         Some(ElasticLimit { outer, inner: None })
@@ -176,7 +176,7 @@ impl ContactModel {
     fn truncation(&self) -> f64 {
         match &self.between {
             Some(between) => {
-                let fewer = self.system.lowest(self.system.modes.saturating_sub(between.block()));
+                let fewer = self.system.lowest(self.system.modes.saturating_sub(between.fewer));
                 self.change(&self.system, &fewer)
             }
             None => self.omitted_flexibility(),
@@ -297,6 +297,17 @@ impl ContactModel {
             curve
         });
         History { time: all.time.clone(), curves: curves.collect() }
+    }
+}
+
+/// `system` with its lowest `modes`, all if none are named.
+fn with_modes(system: System, modes: Option<usize>) -> Result<System> {
+    match modes {
+        Some(modes) if modes > system.modes => {
+            Err(Error::Usage(format!("--modes {modes}: what is struck has {} at most", system.modes)))
+        }
+        Some(modes) => Ok(system.lowest(modes)),
+        None => Ok(system),
     }
 }
 

@@ -6,7 +6,7 @@ use super::soundness::key_collisions;
 use crate::error::Result;
 use crate::kinds::body_keys::{INNER, OUTER, SERIES};
 use crate::kinds::body_reading;
-use crate::kinds::plate_impact::PLATE;
+use crate::kinds::plate_impact::{PLATE, read_plate};
 use crate::material::Material;
 use crate::scene::collision::Collision;
 use crate::scene::grammar::{BODY_MATERIAL, Bound, Field, Kind, choice, optional, positive, pure, required};
@@ -14,7 +14,8 @@ use crate::scene::material::material;
 use crate::scene::quantity::Dimension;
 use crate::scene::values::{Node, Values};
 use crate::scene::{
-    Alias, FileFault, Geometry, Inner, Language, Outer, ReferenceSettings, Scene, Series, Setup, Shape,
+    Alias, Edge, FileFault, Geometry, Inner, Language, Outer, Plate, ReferenceSettings, Scene, Series, Setup,
+    Shape,
 };
 use serde::Serialize;
 use std::borrow::Cow;
@@ -32,6 +33,8 @@ pub struct Wall {
 pub enum Struck {
     /// A wall; there is no inner body.
     Wall(Wall),
+    /// A circular plate, struck at its centre, with no inner body.
+    Plate(Plate),
     /// An elastic body; the inner one lies behind it, if there is one.
     Body(Body),
 }
@@ -67,6 +70,20 @@ impl GeneralImpact {
         if let Some(Struck::Body(body)) = &self.struck { Some(body) } else { None }
     }
 
+    /// The circular plate that is struck, if there is one.
+    pub fn plate(&self) -> Option<&Plate> {
+        if let Some(Struck::Plate(plate)) = &self.struck { Some(plate) } else { None }
+    }
+
+    /// Whether plate or body is held; `None` if there is neither.
+    pub fn is_held(&self) -> Option<bool> {
+        match self.struck.as_ref()? {
+            Struck::Wall(_) => None,
+            Struck::Plate(plate) => Some(plate.edge != Edge::Free),
+            Struck::Body(body) => Some(!body.fixed.is_empty()),
+        }
+    }
+
     /// The inner body if nothing lies between it and the outer one.
     pub fn struck_inner(&self) -> Option<&Inner> {
         self.inner.as_ref().filter(|_| self.struck.is_none())
@@ -77,6 +94,7 @@ impl GeneralImpact {
         let material = match &self.struck {
             Some(Struck::Wall(wall)) => wall.material.as_ref(),
             Some(Struck::Body(body)) => Some(&body.material),
+            Some(Struck::Plate(plate)) => Some(&plate.material),
             None => self.inner.as_ref().map(|inner| &inner.material),
         };
         material.map_or_else(|| Cow::Owned(Material::rigid()), Cow::Borrowed)
@@ -87,6 +105,7 @@ impl GeneralImpact {
         let between = match &self.struck {
             Some(Struck::Wall(wall)) => wall.material.as_ref(),
             Some(Struck::Body(body)) => Some(&body.material),
+            Some(Struck::Plate(plate)) => Some(&plate.material),
             None => None,
         };
         let inner = self.inner.as_ref().map(|inner| &inner.material);
@@ -106,7 +125,7 @@ impl GeneralImpact {
             "efficiency" => self.inner.is_some() && !matches!(outer, Shape::Stack(_)),
             "outer_velocity_final" => !matches!(outer, Shape::Stack(_)),
             "outer_restitution" => !outer.is_mounted(),
-            "first_frequency" => self.body().is_some(),
+            "first_frequency" => self.is_held().is_some(),
             "inner_displacement" | "inner_velocity" | "inner_velocity_final" => self.inner.is_some(),
             _ => !name.starts_with("inner") || (self.inner.is_some() && self.body().is_some()),
         }
@@ -193,7 +212,7 @@ impl Language for super::Kind {
             optional(
                 "plate",
                 Kind::Table(&PLATE),
-                "Circular plate between the bodies; the scene is then one of kind `plate-impact`, with all its keys",
+                "Circular plate that the outer body strikes; with [inner] the scene is one of kind `plate-impact`, with all its keys",
             ),
             optional(
                 "wall",
@@ -226,7 +245,7 @@ impl Language for super::Kind {
     }
 
     fn alias(&self) -> Option<Alias> {
-        Some(Alias { with: "plate", without: "wall", kind: crate::kinds::plate_impact::NAME })
+        Some(Alias { with: &["plate", "inner"], without: "wall", kind: crate::kinds::plate_impact::NAME })
     }
 
     fn collisions(&self, root: &Node) -> Vec<Collision> {
@@ -240,7 +259,8 @@ impl Language for super::Kind {
 
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)> {
         let (outer_table, inner_table) = (root.table("outer")?, root.optional_table("inner")?);
-        let struck = match (root.optional_table("wall")?, root.optional_table("body")?) {
+        let [wall, body, plate] = ["wall", "body", "plate"].map(|key| root.optional_table(key));
+        let struck = match (wall?, body?) {
             (Some(wall), _) => {
                 let material =
                     wall.0.contains_key("material").then(|| material(materials, wall.text("material")?));
@@ -251,7 +271,9 @@ impl Language for super::Kind {
                 let at = [place(&outer_table, "at")?, inner.flatten()];
                 Some(Struck::Body(Body::read(&body, material(materials, body.text("material")?)?, at)?))
             }
-            (None, None) => None,
+            (None, None) => {
+                plate?.map(|plate| read_plate(&plate, materials).map(Struck::Plate)).transpose()?
+            }
         };
         let inner = inner_table.map(|inner| body_reading::inner(&inner, materials)).transpose()?;
         let outer = body_reading::outer(&outer_table, materials)?;

@@ -1,6 +1,7 @@
 //! Impacts that can't be, and numbers that are hardly meant.
 
 use super::{GeneralImpact, NAME};
+use crate::kinds::plate_impact::slenderness;
 use crate::scene::Bodies;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
@@ -56,7 +57,7 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
         },
         Rule {
             fields: vec!["kind"],
-            holds: has("wall") || has("body") || has("inner"),
+            holds: ["plate", "wall", "body", "inner"].into_iter().any(has),
             message:
                 "`inner` is missing: without [plate], [body] and [wall] the outer body strikes the inner one"
                     .into(),
@@ -103,12 +104,12 @@ impl Bodies for GeneralImpact {
         let yields = materials.iter().any(|material| material.plasticity().is_some());
         let relaxes = materials.iter().any(|material| !material.relaxation.is_empty());
         let closing = self.closing_speed();
-        broken(vec![
+        let mut rules = vec![
             Rule {
                 fields: vec!["outer.offset"],
                 holds: self.outer.offset == 0.0,
                 message: format!(
-                    "`outer.offset` is {} m, but it is a distance from the axis of a plate, and there is no plate",
+                    "`outer.offset` is {} m, but without [plate] and [inner] the outer body strikes where it is",
                     self.outer.offset
                 ),
                 help: "remove `outer.offset`",
@@ -155,7 +156,9 @@ impl Bodies for GeneralImpact {
                 message: "the contact joins a plastic and a viscoelastic material, which is not supported".into(),
                 help: "remove `hardening` of the one or the relaxation of the other",
             },
-        ])
+        ];
+        rules.extend(self.plate().map(slenderness));
+        broken(rules)
     }
 
     fn doubts(&self) -> Vec<String> {

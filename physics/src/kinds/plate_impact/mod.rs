@@ -28,8 +28,8 @@ use crate::scene::{Model, Scene};
 use std::f64::consts::FRAC_PI_2;
 
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
-pub(super) use scene::PLATE;
 pub use scene::{MAX_MODES, PlateImpact};
+pub(super) use scene::{PLATE, read_plate, slenderness};
 
 /// Its name in scene files.
 pub(super) const NAME: &str = "plate-impact";

@@ -64,6 +64,11 @@ pub(super) fn measures(scene: &GeneralImpact) -> Vec<(String, String)> {
         |material: Option<&Material>| material.map_or("rigid", |material| &material.name).to_owned();
     let struck = scene.struck.as_ref().map(|struck| match struck {
         Struck::Wall(wall) => ("wall".to_owned(), material(wall.material.as_ref())),
+        Struck::Plate(plate) => {
+            let [radius, thickness] = [plate.radius, plate.thickness].map(|length| measure(length, "m"));
+            let of = format!("radius {radius}, thickness {thickness}, {}", plate.material.name);
+            ("plate".to_owned(), of)
+        }
         Struck::Body(body) => {
             let held = if body.fixed.is_empty() { ", free" } else { "" };
             ("body".to_owned(), format!("{}, {}{held}", name_of(struck), material(Some(&body.material))))
@@ -84,6 +89,7 @@ pub(super) fn measures(scene: &GeneralImpact) -> Vec<(String, String)> {
 fn name_of(struck: &Struck) -> String {
     match struck {
         Struck::Wall(wall) => if wall.material.is_some() { "wall" } else { "rigid wall" }.to_owned(),
+        Struck::Plate(_) => "plate".to_owned(),
         Struck::Body(body) => {
             let name = body.file.file_name().unwrap_or(body.file.as_os_str());
             name.to_string_lossy().into_owned()

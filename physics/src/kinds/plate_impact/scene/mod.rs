@@ -6,6 +6,8 @@ mod soundness;
 
 pub use keys::MAX_MODES;
 pub(in crate::kinds) use keys::PLATE;
+pub(in crate::kinds) use read::plate as read_plate;
+pub(in crate::kinds) use soundness::slenderness;
 
 use super::NAME;
 use crate::error::Result;

@@ -9,10 +9,9 @@ use crate::scene::read::refused;
 use crate::scene::values::{Checked, Node, Values, element_order, unknown};
 use crate::scene::{Edge, Fluid, Geometry, Plate, ReferenceSettings, Rigid, ShearThinning};
 
-/// The bodies of a plate impact.
-pub(super) fn plate_impact(root: &Node, materials: &Node) -> Result<PlateImpact> {
-    let plate = root.table("plate")?;
-    let plate = Plate {
+/// The plate that the table `plate` describes.
+pub(in crate::kinds) fn plate(plate: &Node, materials: &Node) -> Result<Plate> {
+    Ok(Plate {
         radius: plate.number("radius")?,
         thickness: plate.number("thickness")?,
         edge: match plate.text("edge")? {
@@ -23,7 +22,12 @@ pub(super) fn plate_impact(root: &Node, materials: &Node) -> Result<PlateImpact>
         },
         material: material(materials, plate.text("material")?)?,
         damping_ratio: plate.number_or("damping_ratio", 0.0)?,
-    };
+    })
+}
+
+/// The bodies of a plate impact.
+pub(super) fn plate_impact(root: &Node, materials: &Node) -> Result<PlateImpact> {
+    let plate = plate(&root.table("plate")?, materials)?;
     Ok(PlateImpact {
         fluid: root.optional_table("fluid")?.map(|f| fluid(&f, &plate)).transpose()?,
         friction: root.number_or("friction", 0.0)?,

@@ -5,7 +5,7 @@ use super::PlateImpact;
 use crate::flight::Chamber;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
-use crate::scene::{Bodies, Flight, Flyer, Material, Shape};
+use crate::scene::{Bodies, Flight, Flyer, Material, Plate, Shape};
 
 /// Least and largest thickness of a plate over its radius. Of a longer rod next to nothing reaches the far face before all is over.
 const SLENDERNESS: [f64; 2] = [1e-6, 10.0];
@@ -15,12 +15,25 @@ const LENGTH: [f64; 2] = [1e-6, 1.0];
 /// strike it.
 const SLOWEST_CHARGE: f64 = 1e5;
 
+/// That a plate is one: the waves and contacts of any other live on scales that no run brings together.
+pub(in crate::kinds) fn slenderness(plate: &Plate) -> Rule {
+    let ratio = plate.thickness / plate.radius;
+    let [least, most] = SLENDERNESS;
+    Rule {
+        fields: vec!["plate.thickness", "plate.radius"],
+        holds: (least..=most).contains(&ratio),
+        message: format!(
+            "the plate is no plate: `plate.thickness` is {ratio:.3e} times `plate.radius`, but it must be {least:e} to {most} times"
+        ),
+        help: "is one of them in the wrong unit?",
+    }
+}
+
 impl Bodies for PlateImpact {
     fn kind(&self) -> &'static str {
         NAME
     }
 
-    /// A plate that is no plate: its waves and its contacts live on scales that no run brings together.
     fn collisions(&self) -> Vec<Collision> {
         let plate = &self.plate;
         let elastic = self.materials().iter().all(|material| material.is_elastic());
@@ -32,17 +45,8 @@ impl Bodies for PlateImpact {
         let spheres =
             [&self.outer.shape, &self.inner.shape].iter().all(|shape| matches!(shape, Shape::Sphere { .. }));
         let (resistance, striking) = strongest_drive(&self.outer.shape);
-        let ratio = plate.thickness / plate.radius;
-        let [least, most] = SLENDERNESS;
         broken(vec![
-            Rule {
-                fields: vec!["plate.thickness", "plate.radius"],
-                holds: (least..=most).contains(&ratio),
-                message: format!(
-                    "the plate is no plate: `plate.thickness` is {ratio:.3e} times `plate.radius`, but it must be {least:e} to {most} times"
-                ),
-                help: "is one of them in the wrong unit?",
-            },
+            slenderness(plate),
             Rule {
                 fields: vec!["outer.offset", "plate.radius"],
                 holds: self.outer.offset < plate.radius,
