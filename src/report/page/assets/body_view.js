@@ -24,55 +24,41 @@
       ? [[0, 3, 5, 3, 1, 4, 5, 4, 2, 3, 4, 5], [0, 3, 3, 1, 1, 4, 4, 2, 2, 5, 5, 0]] : [[0, 1, 2], [0, 1, 1, 2, 2, 0]];
     const taken = (pattern) => Uint32Array.from({ length: (faces.length / nodes) * pattern.length }, (_, k) =>
       faces[nodes * Math.floor(k / pattern.length) + pattern[k % pattern.length]]);
-    const triangles = taken(parts), fixed = decode(data.fixed, Uint8Array), held = new Float32Array(triangles.length);
-    const loose = new Set([...fixed.keys()].filter((node) => fixed[node]));
-    // a triangle is fixed if all its nodes are
+    const triangles = taken(parts), fixed = Float32Array.from(decode(data.fixed, Uint8Array)), held = new Set();
     for (let t = 0; t < triangles.length; t += 3) {
       const corners = triangles.subarray(t, t + 3);
-      if (!corners.every((node) => fixed[node])) continue;
-      held.fill(1, t, t + 3);
-      corners.forEach((node) => loose.delete(node));
+      if (corners.every((node) => fixed[node])) corners.forEach((node) => held.add(node));
     }
     return {
-      points, triangles, held, places: Array.from({ length: fixed.length }, (_, k) => [...points.subarray(3 * k, 3 * k + 3)]),
-      edges: decode(data.edges, Uint32Array), mesh: taken(sides), loose: Uint32Array.from([...loose].flatMap((node) => [node, node])),
+      points, triangles, fixed, places: Array.from(fixed, (_, k) => [...points.subarray(3 * k, 3 * k + 3)]), edges: decode(data.edges, Uint32Array), mesh: taken(sides),
+      // fixed nodes without a fixed triangle
+      loose: Uint32Array.from(fixed.keys()).filter((node) => fixed[node] && !held.has(node)),
     };
   }
 
   // normals at the corners of the triangles: means of those around a node that differ by less than a crease
   function normalsOf({ places, triangles }) {
-    const areas = [], units = [], around = places.map(() => []);
+    const areas = [], units = [], around = places.map(() => []), normals = new Float32Array(3 * triangles.length);
     for (let t = 0; t < triangles.length; t += 3) {
-      const corners = triangles.subarray(t, t + 3), area = normalOf([...corners].map((node) => places[node])), size = Math.hypot(...area) || 1;
-      corners.forEach((node) => around[node].push(areas.length));
+      const corners = [...triangles.subarray(t, t + 3)], area = normalOf(corners.map((node) => places[node])), size = Math.hypot(...area) || 1;
+      for (const node of corners) around[node].push(areas.length);
       areas.push(area);
       units.push(area.map((x) => x / size));
     }
-    const normals = new Float32Array(3 * triangles.length), smooth = (t) => (sum, other) => (dot(units[t], units[other]) > CREASE ? along(sum, 1, areas[other]) : sum);
-    triangles.forEach((node, corner) => normals.set(around[node].reduce(smooth(Math.floor(corner / 3)), [0, 0, 0]), 3 * corner));
+    triangles.forEach((node, corner) => {
+      const alike = around[node].filter((t) => dot(units[t], units[Math.floor(corner / 3)]) > CREASE);
+      normals.set(alike.reduce((sum, t) => along(sum, 1, areas[t]), [0, 0, 0]), 3 * corner);
+    });
     return normals;
-  }
-
-  // the first triangle that a ray meets, and the weights of its nodes
-  function cast({ places, triangles }, from, direction) {
-    let found = null;
-    for (let t = 0; t < triangles.length; t += 3) {
-      const a = places[triangles[t]], u = along(places[triangles[t + 1]], -1, a), v = along(places[triangles[t + 2]], -1, a);
-      const p = cross(direction, v), volume = dot(u, p), s = along(from, -1, a), second = dot(s, p) / volume;
-      if (!(second >= 0 && second <= 1)) continue;
-      const q = cross(s, u), third = dot(direction, q) / volume, far = dot(v, q) / volume;
-      if (third >= 0 && second + third <= 1 && far > 0 && !(far > found?.far)) found = { far, t, weights: [1 - second - third, second, third] };
-    }
-    return found;
   }
 
   const VERTEX = `
     attribute vec3 place, normal, shape; attribute float value, held;
-    uniform mat3 axes; uniform vec3 centre; uniform vec2 zoom, shift; uniform float bend;
+    uniform mat3 axes; uniform vec3 centre, shift; uniform vec2 zoom; uniform float bend;
     varying vec3 facing; varying float level, hatch;
     void main() {
       vec3 seen = axes * (place + bend * shape - centre);
-      gl_Position = vec4(seen.xy * zoom + shift, -0.2 * seen.z, 1.0);
+      gl_Position = vec4(vec3(seen.xy * zoom, -0.2 * seen.z) + shift, 1.0);
       gl_PointSize = 9.0;
       facing = axes * normalize(normal);
       level = value; hatch = held;
@@ -102,10 +88,9 @@
     }
     gl.linkProgram(program);
     gl.useProgram(program);
-    for (const part of [gl.DEPTH_TEST, gl.BLEND, gl.POLYGON_OFFSET_FILL]) gl.enable(part);
-    gl.depthFunc(gl.LEQUAL);
+    gl.enable(gl.DEPTH_TEST);
+    gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    gl.polygonOffset(2, 4);
     const uniform = (name) => gl.getUniformLocation(program, name), set = (name, ...values) => gl[`uniform${values.length}f`](uniform(name), ...values);
     // values of corners, or of nodes once for each corner or end; a buffer is filled when it is first shown
     const attribute = (name, width, values, nodes) => {
@@ -119,40 +104,40 @@
       gl.vertexAttribPointer(place, width, gl.FLOAT, false, 0, 0);
     };
     return (view) => {
-      const { field, bend } = view, ink = field ? LINE_ON_MAP : LINE, half = view.ratio / 4;
+      const { field, bend } = view, ink = field ? LINE_ON_MAP : LINE;
       gl.viewport(0, 0, canvas.width, canvas.height);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
       gl.uniformMatrix3fv(uniform("axes"), false, [0, 1, 2].flatMap((k) => view.rows.map((row) => row[k])));
       set("centre", ...view.centre);
       set("zoom", (2 * view.scale) / view.width, (2 * view.scale) / view.height);
       set("stripe", 9 * view.ratio);
-      set("mapped", Number(!!field));
+      set("mapped", !!field);
       const draw = (mode, nodes, rgb, alpha, bent, moved = [[0, 0]]) => {
         const lit = mode === gl.TRIANGLES;
         attribute("place", 3, surface.points, nodes);
         attribute("shape", 3, field?.shape, nodes);
         attribute("value", 1, lit && field?.values, nodes);
         attribute("normal", 3, lit && normals);
-        attribute("held", 1, lit && surface.held);
-        set("lit", Number(lit));
+        attribute("held", 1, lit && surface.fixed, nodes);
+        set("lit", lit);
         set("bend", bent);
         set("paint", ...rgb.map((c) => c / 255), alpha);
         for (const [x, y] of moved) {
-          set("shift", (x * 2) / canvas.width, (y * 2) / canvas.height);
+          set("shift", x / view.width, y / view.height, lit ? 0 : -0.001);
           gl.drawArrays(mode, 0, nodes.length);
         }
       };
       draw(gl.TRIANGLES, surface.triangles, BODY, 1, bend);
       if (view.mesh) draw(gl.LINES, surface.mesh, ink, 0.5, bend);
       if (bend) draw(gl.LINES, surface.edges, LINE_ON_MAP, 0.6, 0);
-      // lines are one pixel wide: wider ones by drawing them moved
-      draw(gl.LINES, surface.edges, ink, 1, bend, [[-half, 0], [half, 0], [0, -half], [0, half]]);
+      // lines are one pixel wide: drawn four times they are two
+      draw(gl.LINES, surface.edges, ink, 1, bend, [[-0.5, 0], [0.5, 0], [0, -0.5], [0, 0.5]]);
       draw(gl.POINTS, surface.loose, FIXED, 1, bend);
     };
   }
 
   // the same without WebGL: triangles and lines that face the viewer, from the farthest
-  function painter(canvas, { places, triangles, held, edges, mesh, loose }) {
+  function painter(canvas, { places, triangles, fixed, edges, mesh, loose }) {
     const context = canvas.getContext("2d");
     return ({ project, ratio, scale, field, bend, mesh: isMesh }) => {
       const items = [], front = new Set(), seen = places.map((place, k) => {
@@ -167,10 +152,14 @@
         nodes.forEach((node) => front.add(node));
         const light = 0.5 + (0.5 * dot(normal, LIGHT)) / Math.hypot(...normal), bright = field ? 0.62 + 0.42 * light : 0.36 + 0.7 * light;
         const rgb = field ? MAP[Math.min(Math.floor(64 * mean(nodes, (node) => field.values[node])), 63)] : BODY;
-        add(nodes, rgb.map((c, k) => bright * (held[t] ? 0.45 * c + 0.55 * FIXED[k] : c)), 0.7, 0);
+        add(nodes, rgb.map((c, k) => bright * (nodes.every((node) => fixed[node]) ? 0.45 * c + 0.55 * FIXED[k] : c)), 0.7, 0);
       }
-      for (const [list, rgb, width] of [[isMesh ? mesh : [], LINE_ON_MAP, 0.5], [edges, field ? LINE_ON_MAP : LINE, 1.2], [loose, FIXED, 5]]) {
-        for (let k = 0; k < list.length; k += 2) if (front.has(list[k]) && front.has(list[k + 1])) add([list[k], list[k + 1]], rgb, width, 0.02 * scale);
+      for (const [list, rgb, width] of [[mesh.subarray(0, isMesh ? mesh.length : 0), LINE_ON_MAP, 0.5], [edges, field ? LINE_ON_MAP : LINE, 1.2], [loose, FIXED, 5]]) {
+        const step = list === loose ? 1 : 2;
+        for (let k = 0; k < list.length; k += step) {
+          const nodes = [...list.subarray(k, k + step)];
+          if (nodes.every((node) => front.has(node))) add(nodes, rgb, width, 0.02 * scale);
+        }
       }
       context.setTransform(ratio, 0, 0, ratio, 0, 0);
       context.clearRect(0, 0, canvas.width, canvas.height);
@@ -188,15 +177,14 @@
   }
 
   // a contact: sphere of the tip and arrow of the force on the body, and its name
-  function contactDrawn({ name, place, normal, radius, hidden }, { project, scale, width, height }) {
+  function contactDrawn({ name, place, normal, radius }, { project, scale, rows }) {
     const tip = project(place), tail = project(along(place, Math.min(ARROW, 100 / scale), normal)), ball = project(along(place, radius, normal));
-    const long = Math.hypot(tail[0] - tip[0], tail[1] - tip[1]), [x, y] = [0, 1].map((k) => (tip[k] - tail[k]) / (long || 1)), isArrow = long > 14;
+    const long = Math.hypot(tail[0] - tip[0], tail[1] - tip[1]), [x, y] = [0, 1].map((k) => (tip[k] - tail[k]) / (long || 1)), isArrow = long > 14, hidden = dot(normal, rows[2]) < -1e-9;
     const back = (s, side = 0) => `${tip[0] - s * x - side * y} ${tip[1] - s * y + side * x}`;
     const arrow = isArrow ? `<path class="halo" d="M${back(long)}L${back(0)}"/><path d="M${back(long)}L${back(8)}"/><path class="head" d="M${back(0)}L${back(11, 4.5)}L${back(11, -4.5)}z"/>` : "";
     const sphere = radius <= LARGEST_TIP ? `<circle class="tip" cx="${ball[0]}" cy="${ball[1]}" r="${radius * scale}"/>` : "";
-    const [a, b] = isArrow ? [tail[0] - 22 * x, tail[1] - 12 * y] : [tip[0], tip[1] - 16];
-    const text = hidden && !isArrow ? "" : `<text x="${within(24, a, width - 24)}" y="${within(10, b, height - 10)}">${name}</text>`;
-    return `<g class="contact">${text}<g${hidden ? ' class="hidden"' : ""}>${sphere}${arrow}<circle cx="${tip[0]}" cy="${tip[1]}" r="3.6"/></g></g>`;
+    const [a, b] = isArrow ? [tail[0] - 22 * x, tail[1] - 12 * y] : [tip[0], tip[1] - 16], text = hidden && !isArrow ? "" : `<text x="${a}" y="${b}">${name}</text>`;
+    return `<g class="contact"><g${hidden ? ' class="hidden"' : ""}>${sphere}${arrow}<circle cx="${tip[0]}" cy="${tip[1]}" r="3.6"/></g>${text}</g>`;
   }
 
   // the axes of the file, and a round length of at most a quarter of the width
@@ -218,22 +206,22 @@
     const [perMetre, unit] = size < 2e-3 ? [1e6, "µm"] : [1e3, "mm"], decimals = Math.max(4 - Math.ceil(Math.log10(size * perMetre)), 0);
     const lengths = (metres, between) => `${metres.map((x) => +(x * perMetre).toFixed(decimals)).join(between).replaceAll("-", "−")} ${unit}`;
     const extent = `${lengths([0, 1, 2].map((k) => size * surface.places.reduce((most, place) => Math.max(most, place[k]), 0)), " × ")} (x, y, z)`;
-    const isFixed = surface.held.includes(1) || surface.loose.length > 0, key = (kind, words) => `<li><span class="${kind}"></span>${words}</li>`;
+    const isFixed = surface.fixed.includes(1), key = (sign, words) => `<li><span>${sign}</span>${words}</li>`;
     figure.insertAdjacentHTML("afterbegin", `
-      <div class="body-view-controls" role="group" aria-label="What is shown of the body, and from where">
+      <div class="body-view-controls" role="group" aria-label="View of the body">
         <label>Show <select><option value="-1">geometry</option></select></label><button type="button"></button><label><input type="checkbox"> mesh</label>
         <span>${["top", "side", "bottom", "+", "−", "reset"].map((act) => `<button type="button">${act}</button>`).join("")}</span>
       </div>
-      <div class="body-view-frame"><canvas tabindex="0" role="img"></canvas><svg aria-hidden="true"></svg><output></output></div>
+      <div class="body-view-frame"><canvas tabindex="0" role="img"></canvas><svg aria-hidden="true"></svg></div>
       <div class="body-view-scale"><div></div><div style="background:linear-gradient(to right,${MAP.map((c) => `rgb(${c})`)})"></div><div></div></div>
-      <ul class="legend">${isFixed ? key("fixed", "fixed") : "<li>nothing is fixed</li>"}${contacts.length ? key("arrow", "contact point, force on the body") : ""}
-        ${contacts.some(({ radius }) => radius <= LARGEST_TIP) ? key("tip", "sphere of the tip radius") : ""}<li>${extent}</li></ul>
-      <p class="note soft"><span>Drag or arrow keys turn the body; with Shift they move it. + and − zoom, after a click the wheel too. Double click or 0: first view.</span>
-        <span>One finger turns the body: sideways at once, every way after a tap. Two fingers zoom. Double tap: first view.</span></p>`);
-    const [canvas, svg, select, play, mesh, output, bar] = ["canvas", "svg", "select", "button", "input", "output", ".body-view-scale"].map((name) => figure.querySelector(name));
+      <ul class="legend">${isFixed ? key("", "fixed") : "<li>nothing is fixed</li>"}${contacts.length ? key("→", "contact point, force on the body") : ""}
+        ${contacts.some(({ radius }) => radius <= LARGEST_TIP) ? key("◌", "sphere of the tip radius") : ""}<li>${extent}</li></ul>
+      <p class="note soft"><span>Drag or arrow keys turn the body, Shift and drag moves it. + and − zoom, after a click the wheel too. A double click resets.</span>
+        <span>One finger turns the body: sideways at once, every way after a tap. Two fingers zoom. A double tap resets.</span></p>`);
+    const [canvas, svg, select, play, mesh, bar] = ["canvas", "svg", "select", "button", "input", ".body-view-scale"].map((name) => figure.querySelector(name));
     select.append(...fields.map(({ name }, k) => new Option(name, k)));
     canvas.ariaLabel = `The body in 3D, ${extent}. ${contacts.map(({ name, point }) => `The ${name} contact is at ${lengths(point, ", ")}. `).join("")}${
-      isFixed ? "Fixed faces are hatched" : "Nothing is fixed"}. Arrow keys turn the body, plus and minus zoom, 0 shows the first view.`;
+      isFixed ? "Fixed faces are hatched" : "Nothing is fixed"}. Arrow keys turn the body, plus and minus zoom, 0 resets.`;
 
     // the axis that is nearest to the outer contact's normal is up, z in doubt
     const outward = contacts[0]?.normal ?? [0, 0, 1], axis = [2, 0, 1].reduce((best, k) => (Math.abs(outward[k]) > Math.abs(outward[best]) + 1e-3 ? k : best));
@@ -256,21 +244,19 @@
       view.scale = Math.max(Math.min((0.88 * view.width) / (wide[1] - wide[0]), (view.height - 76) / (high[1] - high[0])), 10);
       draw();
     };
-    // isometric, from where the contacts face the viewer most
-    const faced = (azimuth) => contacts.reduce((sum, { normal }) => sum + dot(normal, mix(side, cross(up, side), azimuth)), 0);
-    const start = [-1, 1, 3, 5].map((k) => (k * Math.PI) / 4).reduce((best, azimuth) => (faced(azimuth) > faced(best) + 1e-6 ? azimuth : best));
+    // isometric, from the quadrant into which the contacts' normals point
+    const sum = contacts.reduce((sum, { normal }) => along(sum, 1, normal), [0, 0, 0]), quarter = Math.PI / 2;
+    const start = (Math.floor(Math.atan2(dot(sum, cross(up, side)), dot(sum, side)) / quarter) + 0.5) * quarter;
 
-    let render = webgl(canvas, surface) ?? painter(canvas, surface), waiting = 0, playing = 0, entered = false;
+    let render = webgl(canvas, surface) ?? painter(canvas, surface), waiting = 0, playing = 0;
     const drawNow = () => {
       waiting = 0;
       if (!view.width) return;
-      const { rows } = view, isHidden = ({ normal, place }) => dot(normal, rows[2]) < 0 || cast(surface, along(place, 2e-3, normal), rows[2]) != null;
       render(view);
-      const drawn = contacts.map((contact) => contactDrawn({ ...contact, hidden: isHidden(contact) }, view));
-      svg.innerHTML = drawn.join("") + scaleDrawn(view, size, perMetre, unit);
+      svg.innerHTML = contacts.map((contact) => contactDrawn(contact, view)).join("") + scaleDrawn(view, size, perMetre, unit);
     };
     const draw = () => { waiting ||= requestAnimationFrame(drawNow); };
-    const turn = (dx, dy) => { orient(view.azimuth - dx, within(-Math.PI / 2, view.elevation + dy, Math.PI / 2)); draw(); };
+    const turn = (dx, dy) => { orient(view.azimuth - dx, within(-quarter, view.elevation + dy, quarter)); draw(); };
     const move = (dx, dy) => { view.centre = along(along(view.centre, -dx / view.scale, view.rows[0]), dy / view.scale, view.rows[1]); draw(); };
     // what is at the place stays there
     const zoom = (factor, [x, y] = [view.width / 2, view.height / 2]) => {
@@ -278,57 +264,44 @@
       move(share * (view.width / 2 - x), share * (view.height / 2 - y));
       view.scale = scale;
     };
-    // place and value under the pointer; a deformed body has none
-    const read = ([x, y]) => {
-      const { field, rows } = view, plane = along(along(view.centre, (x - view.width / 2) / view.scale, rows[0]), (view.height / 2 - y) / view.scale, rows[1]);
-      const found = field?.shape ? null : cast(surface, along(plane, 9, rows[2]), rows[2].map((c) => -c));
-      const mean = (of) => found.weights.reduce((sum, weight, k) => sum + weight * of(surface.triangles[found.t + k]), 0);
-      const value = field && found ? `${number(field.low + mean((node) => field.values[node]) * (field.high - field.low), 2)} ${field.unit} at ` : "";
-      output.textContent = found ? value + lengths(low.map((least, k) => least + size * mean((node) => surface.places[node][k])), ", ") : "";
-    };
-
     const fingers = new Map(), spot = (event) => [event.offsetX, event.offsetY], on = (event, action) => canvas.addEventListener(event, action, { passive: false });
     on("webglcontextlost", (event) => event.preventDefault());
     on("webglcontextrestored", () => { render = webgl(canvas, surface); draw(); });
     on("pointerdown", (event) => {
       fingers.set(event.pointerId, spot(event));
       canvas.setPointerCapture(event.pointerId);
-      entered = true;
     });
     on("pointermove", (event) => {
-      if (!fingers.has(event.pointerId)) return read(spot(event));
+      if (!fingers.has(event.pointerId)) return;
       const old = [...fingers.values()], [x, y] = fingers.get(event.pointerId), [dx, dy] = [event.offsetX - x, event.offsetY - y];
       const now = [...fingers.set(event.pointerId, spot(event)).values()], apart = ([a, b]) => Math.hypot(a[0] - b[0], a[1] - b[1]) || 1;
       if (old.length === 2) {
         move(dx / 2, dy / 2);
         zoom(apart(now) / apart(old), [0, 1].map((k) => (now[0][k] + now[1][k]) / 2));
-      } else if (event.shiftKey || event.buttons & 6) move(dx, dy);
+      } else if (event.shiftKey) move(dx, dy);
       // a finger's way up or down scrolls the page until the view is tapped
       else turn(0.01 * dx, event.pointerType === "touch" && document.activeElement !== canvas ? 0 : 0.01 * dy);
     });
     for (const end of ["pointerup", "pointercancel"]) on(end, (event) => fingers.delete(event.pointerId));
-    on("pointerleave", () => { entered = false; output.textContent = ""; });
-    on("click", (event) => { canvas.focus({ preventScroll: true }); read(spot(event)); });
-    on("contextmenu", (event) => event.preventDefault());
+    on("click", () => canvas.focus({ preventScroll: true }));
     on("dblclick", () => acts.reset());
     on("wheel", (event) => {
-      if (!entered) return;
+      if (document.activeElement !== canvas) return;
       event.preventDefault();
-      zoom(Math.exp(-0.0015 * event.deltaY * (event.deltaMode ? 20 : 1)), spot(event));
+      zoom(Math.exp(-0.0015 * event.deltaY), spot(event));
     });
     on("keydown", (event) => {
-      const arrow = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key], act = acts[{ "=": "+", "-": "−", 0: "reset" }[event.key] ?? event.key];
-      if (!(arrow || act) || event.ctrlKey || event.metaKey || event.altKey) return;
+      const act = acts[{ "=": "+", "-": "−", 0: "reset" }[event.key] ?? event.key];
+      if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
       event.preventDefault();
-      if (act) act();
-      else if (event.shiftKey) move(24 * arrow[0], 24 * arrow[1]);
-      else turn(0.15 * arrow[0], 0.15 * arrow[1]);
+      act();
     });
 
     // by the words on the buttons; a mode is still at its largest, and where motion is not wanted its sign is changed instead
-    const still = matchMedia("(prefers-reduced-motion: reduce)").matches ? "reverse" : "animate", across = start + Math.PI / 4;
+    const still = matchMedia("(prefers-reduced-motion: reduce)").matches ? "reverse" : "animate", across = start + quarter / 2;
     const acts = {
-      top: () => look(across, Math.PI / 2), side: () => look(across, 0), bottom: () => look(across, -Math.PI / 2), reset: () => look(start, ISOMETRIC),
+      top: () => look(across, quarter), side: () => look(across, 0), bottom: () => look(across, -quarter), reset: () => look(start, ISOMETRIC),
+      ArrowLeft: () => turn(-0.15, 0), ArrowRight: () => turn(0.15, 0), ArrowUp: () => turn(0, -0.15), ArrowDown: () => turn(0, 0.15),
       "+": () => zoom(1.25), "−": () => zoom(0.8), reverse: () => { view.bend = -view.bend; draw(); },
       stop: () => { cancelAnimationFrame(playing); play.textContent = still; },
       animate: () => {
@@ -341,20 +314,19 @@
         play.textContent = "stop";
       },
     };
-    figure.querySelector(".body-view-controls").addEventListener("click", ({ target }) => target.type === "button" && acts[target.textContent]());
-    mesh.addEventListener("change", () => { view.mesh = mesh.checked; draw(); });
+    figure.addEventListener("click", ({ target }) => target.type === "button" && acts[target.textContent]());
     const choose = () => {
       const field = fields[select.value], [heading, , marks] = bar.children;
       acts.stop();
-      Object.assign(view, { field, bend: field?.shape ? BEND : 0 });
-      [play.hidden, bar.hidden, output.textContent] = [!field?.shape, !field, ""];
+      Object.assign(view, { field, bend: field?.shape ? BEND : 0, mesh: mesh.checked });
+      [play.hidden, bar.hidden] = [!field?.shape, !field];
       if (field) {
-        heading.textContent = field.name + (field.shape ? `: displacement over its largest, drawn as ${100 * BEND} % of the body's size` : field.unit && ` in ${field.unit}`);
+        heading.textContent = field.name + (field.shape ? `: displacement over its largest, drawn as 5 % of the body's size` : field.unit && ` in ${field.unit}`);
         marks.innerHTML = [0, 0.25, 0.5, 0.75, 1].map((s) => `<span>${number(field.low + s * (field.high - field.low))}</span>`).join("");
       }
       draw();
     };
-    select.addEventListener("change", choose);
+    figure.addEventListener("change", choose);
     choose();
     // a view that was turned or zoomed stays when its size changes
     new ResizeObserver(() => {
