@@ -1,21 +1,19 @@
-// The view of a meshed body: every figure.body-view has its surface as JSON, which WebGL draws; where there is none the
-// painter's algorithm does on a 2D canvas. Contacts, axes and the scale are SVG over the canvas.
+// A meshed body in 3D: every figure.body-view has its surface as JSON, which WebGL draws, or the painter's algorithm on a
+// 2D canvas where there is none. Contacts, axes and the scale are SVG over it.
 (() => {
   "use strict";
   const BODY = [178, 188, 198], FIXED = [176, 38, 140], LINE = [38, 44, 50], LINE_ON_MAP = [150, 158, 166], LIGHT = [-0.36, 0.62, 0.7];
-  const CREASE = Math.cos((40 * Math.PI) / 180), ISOMETRIC = Math.asin(Math.sqrt(1 / 3)), BEND = 0.05, PERIOD = 2500, ARROW = 0.2, LARGEST_TIP = 0.6;
+  const CREASE = Math.cos((40 * Math.PI) / 180), ISOMETRIC = Math.atan(Math.SQRT1_2), BEND = 0.05, PERIOD = 2500, ARROW = 0.2, LARGEST_TIP = 0.6;
   const decode = (text, Type) => new Type(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-  // a + s b
   const along = (a, s, b) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
   const normalOf = ([a, b, c]) => cross(along(b, -1, a), along(c, -1, a));
   const within = (low, value, high) => Math.min(Math.max(value, low), high);
-  const number = (value, digits = 3) => String(+value.toPrecision(digits)).replace("-", "−");
+  const number = (value) => String(+value.toPrecision(3)).replace("-", "−");
   // cividis as in the other drawings: polynomials of d3-scale-chromatic
   const CIVIDIS = [[-4.54, 32.49, 81.24], [-35.34, 170.73, 442.36], [2381.73, 52.82, -2482.43], [-6402.7, -131.46, 6167.24], [7024.72, 176.58, -6614.94], [-2710.57, -67.37, 2475.67]];
-  const colour = (t) => CIVIDIS.reduceRight((sum, c) => along(c, t, sum), [0, 0, 0]).map((c) => within(0, Math.round(c), 255));
-  const MAP = Array.from({ length: 64 }, (_, k) => colour(k / 63));
+  const MAP = Array.from({ length: 64 }, (_, k) => CIVIDIS.reduceRight((sum, c) => along(c, k / 63, sum), [0, 0, 0]).map((c) => within(0, Math.round(c), 255)));
 
   // the surface in units of its largest extent, from the corner of its box
   function surfaceOf(data) {
@@ -92,7 +90,7 @@
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     const uniform = (name) => gl.getUniformLocation(program, name), set = (name, ...values) => gl[`uniform${values.length}f`](uniform(name), ...values);
-    // values of corners, or of nodes once for each corner or end; a buffer is filled when it is first shown
+    // values of corners, or of nodes for each corner or end; buffers are filled when first shown
     const attribute = (name, width, values, nodes) => {
       const place = gl.getAttribLocation(program, name);
       if (!values) return gl.disableVertexAttribArray(place);
@@ -136,11 +134,11 @@
     };
   }
 
-  // the same without WebGL: triangles and lines that face the viewer, from the farthest
+  // the same without WebGL: triangles that face the viewer, and lines, from the farthest
   function painter(canvas, { places, triangles, fixed, edges, mesh, loose }) {
     const context = canvas.getContext("2d");
     return ({ project, ratio, scale, field, bend, mesh: isMesh }) => {
-      const items = [], front = new Set(), seen = places.map((place, k) => {
+      const items = [], seen = places.map((place, k) => {
         const [x, y, z] = project(bend ? along(place, bend, field.shape.subarray(3 * k)) : place);
         return [x, -y, z * scale];
       });
@@ -149,17 +147,12 @@
       for (let t = 0; t < triangles.length; t += 3) {
         const nodes = [...triangles.subarray(t, t + 3)], normal = normalOf(nodes.map((node) => seen[node]));
         if (!(normal[2] > 0)) continue;
-        nodes.forEach((node) => front.add(node));
         const light = 0.5 + (0.5 * dot(normal, LIGHT)) / Math.hypot(...normal), bright = field ? 0.62 + 0.42 * light : 0.36 + 0.7 * light;
         const rgb = field ? MAP[Math.min(Math.floor(64 * mean(nodes, (node) => field.values[node])), 63)] : BODY;
         add(nodes, rgb.map((c, k) => bright * (nodes.every((node) => fixed[node]) ? 0.45 * c + 0.55 * FIXED[k] : c)), 0.7, 0);
       }
-      for (const [list, rgb, width] of [[mesh.subarray(0, isMesh ? mesh.length : 0), LINE_ON_MAP, 0.5], [edges, field ? LINE_ON_MAP : LINE, 1.2], [loose, FIXED, 5]]) {
-        const step = list === loose ? 1 : 2;
-        for (let k = 0; k < list.length; k += step) {
-          const nodes = [...list.subarray(k, k + step)];
-          if (nodes.every((node) => front.has(node))) add(nodes, rgb, width, 0.02 * scale);
-        }
+      for (const [list, step, rgb, width] of [[edges, 2, field ? LINE_ON_MAP : LINE, 1.2], [loose, 1, FIXED, 5], [isMesh ? mesh : [], 2, LINE_ON_MAP, 0.5]]) {
+        for (let k = 0; k < list.length; k += step) add([...list.subarray(k, k + step)], rgb, width, 0.02 * scale);
       }
       context.setTransform(ratio, 0, 0, ratio, 0, 0);
       context.clearRect(0, 0, canvas.width, canvas.height);
@@ -202,7 +195,7 @@
     const data = JSON.parse(figure.querySelector("script").textContent), surface = surfaceOf(data), { low, size } = data;
     const shares = (text, Type, most) => text && Float32Array.from(decode(text, Type), (q) => q / most);
     const fields = data.fields.map((field) => ({ ...field, values: shares(field.values, Uint8Array, 255), shape: shares(field.shape, Int8Array, 127) }));
-    const contacts = data.contacts.map((contact) => ({ ...contact, radius: contact.radius / size, place: contact.point.map((x, k) => (x - low[k]) / size) }));
+    const contacts = data.contacts.map((contact) => ({ ...contact, radius: (contact.radius || Infinity) / size, place: contact.point.map((x, k) => (x - low[k]) / size) }));
     const [perMetre, unit] = size < 2e-3 ? [1e6, "µm"] : [1e3, "mm"], decimals = Math.max(4 - Math.ceil(Math.log10(size * perMetre)), 0);
     const lengths = (metres, between) => `${metres.map((x) => +(x * perMetre).toFixed(decimals)).join(between).replaceAll("-", "−")} ${unit}`;
     const extent = `${lengths([0, 1, 2].map((k) => size * surface.places.reduce((most, place) => Math.max(most, place[k]), 0)), " × ")} (x, y, z)`;
@@ -214,17 +207,17 @@
       </div>
       <div class="body-view-frame"><canvas tabindex="0" role="img"></canvas><svg aria-hidden="true"></svg></div>
       <div class="body-view-scale"><div></div><div style="background:linear-gradient(to right,${MAP.map((c) => `rgb(${c})`)})"></div><div></div></div>
-      <ul class="legend">${isFixed ? key("", "fixed") : "<li>nothing is fixed</li>"}${contacts.length ? key("→", "contact point, force on the body") : ""}
+      <ul class="legend">${isFixed ? key("", "fixed") : "<li>nothing is fixed</li>"}${key("→", "contact point, force on the body")}
         ${contacts.some(({ radius }) => radius <= LARGEST_TIP) ? key("◌", "sphere of the tip radius") : ""}<li>${extent}</li></ul>
       <p class="note soft"><span>Drag or arrow keys turn the body, Shift and drag moves it. + and − zoom, after a click the wheel too. A double click resets.</span>
-        <span>One finger turns the body: sideways at once, every way after a tap. Two fingers zoom. A double tap resets.</span></p>`);
+        <span>One finger turns the body: sideways, every way after a tap. Two fingers zoom. A double tap resets.</span></p>`);
     const [canvas, svg, select, play, mesh, bar] = ["canvas", "svg", "select", "button", "input", ".body-view-scale"].map((name) => figure.querySelector(name));
     select.append(...fields.map(({ name }, k) => new Option(name, k)));
-    canvas.ariaLabel = `The body in 3D, ${extent}. ${contacts.map(({ name, point }) => `The ${name} contact is at ${lengths(point, ", ")}. `).join("")}${
+    canvas.ariaLabel = `Body in 3D, ${extent}. ${contacts.map(({ name, point }) => `The ${name} contact is at ${lengths(point, ", ")}. `).join("")}${
       isFixed ? "Fixed faces are hatched" : "Nothing is fixed"}. Arrow keys turn the body, plus and minus zoom, 0 resets.`;
 
     // the axis that is nearest to the outer contact's normal is up, z in doubt
-    const outward = contacts[0]?.normal ?? [0, 0, 1], axis = [2, 0, 1].reduce((best, k) => (Math.abs(outward[k]) > Math.abs(outward[best]) + 1e-3 ? k : best));
+    const outward = contacts[0].normal, axis = [2, 0, 1].reduce((best, k) => (Math.abs(outward[k]) > Math.abs(outward[best]) + 1e-3 ? k : best));
     const [up, side] = [[axis, Math.sign(outward[axis])], [(axis + 1) % 3, 1]].map(([k, sign]) => [0, 1, 2].map((other) => (other === k ? sign : 0)));
     const view = { scale: 1 }, mix = (a, b, angle) => along(a.map((x) => Math.cos(angle) * x), Math.sin(angle), b);
     const orient = (azimuth, elevation) => {
@@ -239,14 +232,14 @@
     const look = (azimuth, elevation) => {
       orient(azimuth, elevation);
       const all = [...surface.places, ...contacts.map(({ place, normal }) => along(place, ARROW, normal))], [wide, high] = [0, 1].map((k) =>
-        all.map((place) => dot(view.rows[k], place)).reduce(([least, most], s) => [Math.min(least, s), Math.max(most, s)], [Infinity, -Infinity]));
+        all.map((place) => dot(view.rows[k], place)).reduce(([low, high], s) => [Math.min(low, s), Math.max(high, s)], [9, -9]));
       view.centre = along(view.rows[0].map((x) => (x * (wide[0] + wide[1])) / 2), (high[0] + high[1]) / 2, view.rows[1]);
       view.scale = Math.max(Math.min((0.88 * view.width) / (wide[1] - wide[0]), (view.height - 76) / (high[1] - high[0])), 10);
       draw();
     };
-    // isometric, from the quadrant into which the contacts' normals point
+    // isometric, from where the contacts' normals point to
     const sum = contacts.reduce((sum, { normal }) => along(sum, 1, normal), [0, 0, 0]), quarter = Math.PI / 2;
-    const start = (Math.floor(Math.atan2(dot(sum, cross(up, side)), dot(sum, side)) / quarter) + 0.5) * quarter;
+    const start = (Math.floor(Math.atan2(dot(sum, cross(up, side)), dot(sum, side)) / quarter) + 0.5) * quarter, across = start + quarter / 2;
 
     let render = webgl(canvas, surface) ?? painter(canvas, surface), waiting = 0, playing = 0;
     const drawNow = () => {
@@ -282,7 +275,7 @@
       // a finger's way up or down scrolls the page until the view is tapped
       else turn(0.01 * dx, event.pointerType === "touch" && document.activeElement !== canvas ? 0 : 0.01 * dy);
     });
-    for (const end of ["pointerup", "pointercancel"]) on(end, (event) => fingers.delete(event.pointerId));
+    on("lostpointercapture", (event) => fingers.delete(event.pointerId));
     on("click", () => canvas.focus({ preventScroll: true }));
     on("dblclick", () => acts.reset());
     on("wheel", (event) => {
@@ -297,13 +290,12 @@
       act();
     });
 
-    // by the words on the buttons; a mode is still at its largest, and where motion is not wanted its sign is changed instead
-    const still = matchMedia("(prefers-reduced-motion: reduce)").matches ? "reverse" : "animate", across = start + quarter / 2;
+    // by words on buttons and by keys; where motion is not wanted a mode does not move but changes its sign
     const acts = {
       top: () => look(across, quarter), side: () => look(across, 0), bottom: () => look(across, -quarter), reset: () => look(start, ISOMETRIC),
       ArrowLeft: () => turn(-0.15, 0), ArrowRight: () => turn(0.15, 0), ArrowUp: () => turn(0, -0.15), ArrowDown: () => turn(0, 0.15),
       "+": () => zoom(1.25), "−": () => zoom(0.8), reverse: () => { view.bend = -view.bend; draw(); },
-      stop: () => { cancelAnimationFrame(playing); play.textContent = still; },
+      stop: () => { cancelAnimationFrame(playing); play.textContent = matchMedia("(prefers-reduced-motion: reduce)").matches ? "reverse" : "animate"; },
       animate: () => {
         const began = performance.now(), step = (now) => {
           playing = requestAnimationFrame(step);
@@ -331,7 +323,7 @@
     // a view that was turned or zoomed stays when its size changes
     new ResizeObserver(() => {
       const { clientWidth: width, clientHeight: height } = canvas, { width: old } = view, ratio = within(2, devicePixelRatio, 3);
-      if (!width || (width === old && height === view.height)) return;
+      if (!width) return;
       Object.assign(view, { width, height, ratio, scale: (view.scale * width) / (old || 1) });
       Object.assign(canvas, { width: width * ratio, height: height * ratio });
       svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
