@@ -1,9 +1,9 @@
-// A meshed body in 3D: every figure.body-view has its surface as JSON, which WebGL draws, or the painter's algorithm on a
-// 2D canvas where there is none. Contacts, axes and the scale are SVG over it.
+// A meshed body in 3D: every figure.body-view has its surface as JSON. WebGL draws it, or without it the painter's
+// algorithm. Contacts, axes and the scale are SVG over the canvas.
 (() => {
   "use strict";
-  const BODY = [178, 188, 198], FIXED = [176, 38, 140], LINE = [38, 44, 50], LINE_ON_MAP = [150, 158, 166], LIGHT = [-0.36, 0.62, 0.7];
-  const CREASE = Math.cos((40 * Math.PI) / 180), ISOMETRIC = Math.atan(Math.SQRT1_2), BEND = 0.05, PERIOD = 2500, ARROW = 0.2, LARGEST_TIP = 0.6;
+  const BODY = [178, 188, 198], FIXED = [176, 38, 140], LINE = [38, 44, 50], PALE = [150, 158, 166], LIGHT = [-0.36, 0.62, 0.7];
+  const CREASE = Math.cos((40 * Math.PI) / 180), ISOMETRIC = Math.atan(Math.SQRT1_2), BEND = 0.05, PERIOD = 2500, ARROW = 0.2, MAX_TIP = 0.6;
   const decode = (text, Type) => new Type(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -102,7 +102,7 @@
       gl.vertexAttribPointer(place, width, gl.FLOAT, false, 0, 0);
     };
     return (view) => {
-      const { field, bend } = view, ink = field ? LINE_ON_MAP : LINE;
+      const { field, bend } = view, ink = field ? PALE : LINE;
       gl.viewport(0, 0, canvas.width, canvas.height);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
       gl.uniformMatrix3fv(uniform("axes"), false, [0, 1, 2].flatMap((k) => view.rows.map((row) => row[k])));
@@ -127,8 +127,8 @@
       };
       draw(gl.TRIANGLES, surface.triangles, BODY, 1, bend);
       if (view.mesh) draw(gl.LINES, surface.mesh, ink, 0.5, bend);
-      if (bend) draw(gl.LINES, surface.edges, LINE_ON_MAP, 0.6, 0);
-      // lines are one pixel wide: drawn four times they are two
+      if (bend) draw(gl.LINES, surface.edges, PALE, 0.6, 0);
+      // a line is one pixel wide, four of them are two
       draw(gl.LINES, surface.edges, ink, 1, bend, [[-0.5, 0], [0.5, 0], [0, -0.5], [0, 0.5]]);
       draw(gl.POINTS, surface.loose, FIXED, 1, bend);
     };
@@ -151,8 +151,8 @@
         const rgb = field ? MAP[Math.min(Math.floor(64 * mean(nodes, (node) => field.values[node])), 63)] : BODY;
         add(nodes, rgb.map((c, k) => bright * (nodes.every((node) => fixed[node]) ? 0.45 * c + 0.55 * FIXED[k] : c)), 0.7, 0);
       }
-      for (const [list, step, rgb, width] of [[edges, 2, field ? LINE_ON_MAP : LINE, 1.2], [loose, 1, FIXED, 5], [isMesh ? mesh : [], 2, LINE_ON_MAP, 0.5]]) {
-        for (let k = 0; k < list.length; k += step) add([...list.subarray(k, k + step)], rgb, width, 0.02 * scale);
+      for (const [list, step, rgb, width] of [[edges, 2, field ? PALE : LINE, 1.2], [loose, 1, FIXED, 5], [isMesh ? mesh : [], 2, PALE, 0.5]]) {
+        for (let k = 0; k < list.length; k += step) add([...list.subarray(k, k + step)], rgb, width, 0.01 * scale);
       }
       context.setTransform(ratio, 0, 0, ratio, 0, 0);
       context.clearRect(0, 0, canvas.width, canvas.height);
@@ -160,7 +160,8 @@
       for (const { nodes, rgb, width } of items.sort((a, b) => a.far - b.far)) {
         context.beginPath();
         for (const node of nodes) context.lineTo(seen[node][0], -seen[node][1]);
-        context.closePath();
+        // back to the first; a single node is a dot
+        context.lineTo(seen[nodes[0]][0] + 0.01, -seen[nodes[0]][1]);
         context.fillStyle = context.strokeStyle = `rgb(${rgb.map(Math.round)})`;
         context.lineWidth = width;
         context.fill();
@@ -175,7 +176,7 @@
     const long = Math.hypot(tail[0] - tip[0], tail[1] - tip[1]), [x, y] = [0, 1].map((k) => (tip[k] - tail[k]) / (long || 1)), isArrow = long > 14, hidden = dot(normal, rows[2]) < -1e-9;
     const back = (s, side = 0) => `${tip[0] - s * x - side * y} ${tip[1] - s * y + side * x}`;
     const arrow = isArrow ? `<path class="halo" d="M${back(long)}L${back(0)}"/><path d="M${back(long)}L${back(8)}"/><path class="head" d="M${back(0)}L${back(11, 4.5)}L${back(11, -4.5)}z"/>` : "";
-    const sphere = radius <= LARGEST_TIP ? `<circle class="tip" cx="${ball[0]}" cy="${ball[1]}" r="${radius * scale}"/>` : "";
+    const sphere = radius <= MAX_TIP ? `<circle class="tip" cx="${ball[0]}" cy="${ball[1]}" r="${radius * scale}"/>` : "";
     const [a, b] = isArrow ? [tail[0] - 22 * x, tail[1] - 12 * y] : [tip[0], tip[1] - 16], text = hidden && !isArrow ? "" : `<text x="${a}" y="${b}">${name}</text>`;
     return `<g class="contact"><g${hidden ? ' class="hidden"' : ""}>${sphere}${arrow}<circle cx="${tip[0]}" cy="${tip[1]}" r="3.6"/></g>${text}</g>`;
   }
@@ -208,7 +209,7 @@
       <div class="body-view-frame"><canvas tabindex="0" role="img"></canvas><svg aria-hidden="true"></svg></div>
       <div class="body-view-scale"><div></div><div style="background:linear-gradient(to right,${MAP.map((c) => `rgb(${c})`)})"></div><div></div></div>
       <ul class="legend">${isFixed ? key("", "fixed") : "<li>nothing is fixed</li>"}${key("→", "contact point, force on the body")}
-        ${contacts.some(({ radius }) => radius <= LARGEST_TIP) ? key("◌", "sphere of the tip radius") : ""}<li>${extent}</li></ul>
+        ${contacts.some(({ radius }) => radius <= MAX_TIP) ? key("◌", "sphere of the tip radius") : ""}<li>${extent}</li></ul>
       <p class="note soft"><span>Drag or arrow keys turn the body, Shift and drag moves it. + and − zoom, after a click the wheel too. A double click resets.</span>
         <span>One finger turns the body: sideways, every way after a tap. Two fingers zoom. A double tap resets.</span></p>`);
     const [canvas, svg, select, play, mesh, bar] = ["canvas", "svg", "select", "button", "input", ".body-view-scale"].map((name) => figure.querySelector(name));
@@ -320,7 +321,7 @@
     };
     figure.addEventListener("change", choose);
     choose();
-    // a view that was turned or zoomed stays when its size changes
+    // a turned or zoomed view stays when its size changes
     new ResizeObserver(() => {
       const { clientWidth: width, clientHeight: height } = canvas, { width: old } = view, ratio = within(2, devicePixelRatio, 3);
       if (!width) return;
