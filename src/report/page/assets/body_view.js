@@ -229,7 +229,7 @@
       const [x, y, z] = view.rows.map((row) => dot(row, along(place, -1, view.centre)));
       return [view.width / 2 + view.scale * x, view.height / 2 - view.scale * y, z];
     };
-    // body and arrows as large as the canvas allows
+    // as large as the canvas allows
     const look = (azimuth, elevation) => {
       orient(azimuth, elevation);
       const all = [...surface.places, ...contacts.map(({ place, normal }) => along(place, ARROW, normal))], [wide, high] = [0, 1].map((k) =>
