@@ -27,8 +27,9 @@ const BLOCKS: usize = 14;
 const DROPPED: usize = 2;
 /// Share of a vector's norm below which it is a combination of those before.
 const DEPENDENT: f64 = 1e-9;
-/// Least share of the pressure that lies on the surface.
+/// Least share of the pressure that lies on the surface, and largest one that lies on held nodes.
 const COVERED: f64 = 0.99;
+const HELD: f64 = 0.01;
 
 /// Where a body is struck, and how large the mesh's elements are there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,6 +96,15 @@ impl StruckSolid {
                     ["outer", "inner"][k],
                     1e3 * struck.circles[bad],
                     100.0 * pressed[bad].coverage
+                )));
+            }
+            let held: f64 =
+                pressed[0].nodes.iter().filter(|(node, _)| fixed[*node]).map(|(_, share)| share.abs()).sum();
+            if held > HELD {
+                return Err(Error::Solver(format!(
+                    "{} contact: it lies on a part of the body that is held, so that the body does not move there; \
+                     strike another place, or take that face out of `body.fixed`",
+                    ["outer", "inner"][k]
                 )));
             }
             loads.push(pressed);

@@ -118,7 +118,7 @@ impl Between {
 mod tests {
     use super::*;
     use crate::analytical::hertz::HertzImpact;
-    use crate::body::solid::{ContactInfo, StruckSolid, boxes};
+    use crate::body::solid::{ContactInfo, StruckPoint, StruckSolid, SurfacePoint, boxes};
     use crate::dynamics::integrate;
     use crate::dynamics::integration::{Integration, Options};
     use approx::assert_relative_eq;
@@ -297,5 +297,46 @@ mod tests {
         let mut fixed = vec![false; mesh.points.len()];
         fixed[0] = true;
         assert!(StruckSolid::new(&mesh, 0.3, &fixed, &[]).is_err());
+    }
+
+    /// A contact on what is held, and one whose circle leaves the face.
+    #[test]
+    fn a_contact_that_the_body_can_not_feel_is_refused() {
+        let mesh = boxes([1.0, 1.0, 0.5], [4, 4, 2], 2, |p| p);
+        let refused = |at: [f64; 2], fixed: fn(f64) -> bool| {
+            let fixed: Vec<bool> = mesh.points.iter().map(|p| fixed(p.z)).collect();
+            let at = SurfacePoint { point: Vector3::new(at[0], at[1], 0.5), normal: Vector3::z() };
+            StruckSolid::new(&mesh, 0.3, &fixed, &[StruckPoint { at, circles: [0.15, 0.2, 0.3] }])
+        };
+        let held = refused([0.5; 2], |z| z > 0.49).expect_err("held").to_string();
+        assert!(held.contains("held"), "{held}");
+        let edge = refused([0.1, 0.5], |z| z < 0.01).expect_err("at the edge").to_string();
+        assert!(edge.contains("leaves the face"), "{edge}");
+        assert!(refused([0.5; 2], |z| z < 0.01).is_ok());
+    }
+
+    /// A plate without an inner body is struck as one behind which a body lies that is too far away to be reached.
+    #[test]
+    fn a_plate_alone_is_one_with_an_inner_body_out_of_reach() {
+        use crate::scene::{Model, Scene};
+        let text = |kind: &str, inner: &str| {
+            format!(
+                "name = \"p\"\nkind = \"{kind}\"\n[materials.steel]\nyoungs_modulus = 210e9\npoisson_ratio = 0.3\n\
+                 density = 7780\n[plate]\nradius = 0.033\nthickness = 0.002\nedge = \"clamped\"\nmaterial = \"steel\"\n\
+                 [outer]\nkind = \"sphere\"\nradius = 0.01\nmaterial = \"steel\"\nspeed = 0.55\n{inner}"
+            )
+        };
+        let far = "[inner]\nkind = \"sphere\"\nradius = 0.01\nmaterial = \"steel\"\ngap = 0.1\n[run]\nend_time = 1e-3\n";
+        let result = |kind: &str, inner: &str| {
+            let scene = Scene::parse("p.toml", &text(kind, inner)).expect("valid");
+            let model = crate::kinds::of(&scene).model(&scene, Model::C, None).expect("a model");
+            model.run(1e-8).expect("a result")
+        };
+        let (alone, far) = (result("impact", ""), result("plate-impact", far));
+        for name in ["outer_velocity_final", "outer_force_peak", "outer_contact_end", "first_frequency"] {
+            let [ours, theirs] = [&alone, &far].map(|summary| summary.value(name).expect("a value"));
+            assert_relative_eq!(ours, theirs, max_relative = 2e-3);
+        }
+        assert_eq!(alone.value("inner_velocity_final"), None);
     }
 }
