@@ -127,7 +127,7 @@ fn provenance(report: &SceneReport) -> Markup {
             (facts(&[("", Some(&report.provenance))]))
         }
         details {
-            summary { "Checks of the reference against itself (" (comparison.integrity.len()) ")" }
+            summary { "Internal consistency checks of the reference (" (comparison.integrity.len()) ")" }
             (checks(&comparison.integrity))
         }
     }
