@@ -10,8 +10,9 @@ use maud::{Markup, html};
 
 const EXPLANATION: &str = "What each simplification of model B adds to its difference from the reference. The \
     simplifications are removed one after another, from top to bottom; another order gives other parts. Parts and \
-    remainder add up to the difference. The remainder is model C with most modes minus the reference. It is explained if it lies within its bound: the uncertainty (95 %) of the reference and the uncertainty \
-    of model C, added as independent. Reported, not gated.";
+    remainder add up to the difference. The remainder is model C with most modes minus the reference. It is explained \
+    if it lies within its bound: the uncertainty (95 %) of the reference and the uncertainty of model C, added as \
+    independent. Reported, not gated.";
 
 /// Section of the page; nothing if there is no budget.
 pub(crate) fn budget_html(comparison: &SceneComparison) -> Markup {
