@@ -84,7 +84,7 @@ def sweep(
         model: As in :func:`reduced`.
         modes: As in :func:`reduced`.
         tolerance: As in :func:`reduced`.
-        threads: As many as there are cores unless told.
+        threads: Number of threads; by default the number of cores.
 
     Raises:
         Error: Of the first scene that fails.
@@ -136,10 +136,10 @@ def compare(
         out: Folder of the report; none is written without.
         measured: Histories of a laser vibrometer (CSV, units in the heading), repeated impacts of
             the one scene; what they show is :meth:`Comparison.measured`.
-        bandwidth: Of the instrument, "100 kHz" unless told, or a number in Hz: the models' curves
+        bandwidth: Of the instrument, with unit or in Hz; by default "100 kHz". The models' curves
             are filtered to it.
-        speed: Where the outer body's measured speed comes from: the scene (unless told), or the
-            record, if its signal has no offset.
+        speed: Source of the outer body's speed before the impact: the scene (default), or the
+            record, if its signal has no offset ("measured").
 
     Raises:
         Error: If a reference is missing, a model fails or a record can't be aligned.
@@ -173,21 +173,21 @@ def optimise(
         scene: The impact.
         over: Bounds by field, with units or in SI: `{"plate.thickness": ("1 mm", "3 mm")}`; fields
             that take the same value are joined by commas.
-        objective: A quantity of the summary; the efficiency unless told, of a seal seat
+        objective: A quantity of the summary. Default: the efficiency; of a seal seat
             `intended_speed`, the sphere's speed in the intended direction in m/s.
         within: How far from that direction the sphere may fly, with unit or in rad.
-        mesh: Mesh (.vtu) of a seal seat, which follows its dimensions; a coarse one unless told.
+        mesh: Mesh (.vtu) of a seal seat, scaled to its dimensions; by default a coarse one.
         model: A, B or C; the scene's, else B, of a seal seat C.
         modes: As in :func:`reduced`.
         seed: Of the samples of a search over several variables.
         samples: Their number.
         robust: Maximise this quantile of the objective (0.05 = 5 %) under the scene's uncertainty.
-        verify: Whether the optimum is held against the reference, which is computed if there is
+        verify: Whether the optimum is compared with the reference, which is computed if there is
             none (needs FEniCSx).
         resolution: Of that reference.
         out: Folder of the optimum's files; none are written without.
-        progress: Hears, some ten times a second, how many designs were tried and what the best is
-            worth (None before the first result).
+        progress: Called about ten times a second with the number of designs tried and the best
+            objective (None before the first result).
 
     Raises:
         Error: If a field or its bounds make no sense, or nothing within them has a result.

@@ -22,7 +22,7 @@ class Scene:
 
     Args:
         content: The keys of a scene file, or its text. Quantities are texts with units ("33 mm") or
-            numbers in SI; `impactcheck schema` tells all keys.
+            numbers in SI; `impactcheck schema` lists all keys.
         file: The file that it is the content of, if there is one.
 
     Raises:

@@ -75,7 +75,7 @@ class Result:
 
 @dataclass(frozen=True, repr=False)
 class Comparison:
-    """Models beside references, judged by the scenes' tolerances.
+    """Models compared with references, judged by the scenes' tolerances.
 
     Attributes:
         document: As `impactcheck compare --json` prints it.
@@ -109,7 +109,7 @@ class Comparison:
         return list(self._entry(name, scene)["discrepancies"])
 
     def measured(self, scene: str | None = None) -> dict[str, Any] | None:
-        """Measured records beside the models; None without. Of the first scene unless one is named.
+        """Measured records compared with the models; None without. Default: the first scene.
 
         `efficiency` has mean, standard deviation and values of the impacts, `partners` a row for
         the reference and every model: `efficiency_difference` from the mean, `curves` (metrics).

@@ -10,6 +10,9 @@ use std::path::{Path, PathBuf};
 use toml::{Table, Value};
 
 /// One impact, read and checked.
+///
+/// `Scene(content)` takes the keys of a scene file as a dictionary, or its text; `Scene.read(path)` takes a file or the name of
+/// a shipped scene. Quantities are texts with units ("33 mm") or numbers in SI. It can be copied and pickled.
 #[pyclass(frozen, module = "impactcheck")]
 pub struct Scene {
     /// Empty of a dictionary.
@@ -25,6 +28,10 @@ impl Scene {
     #[pyo3(signature = (content, file=None))]
     fn new(content: &Bound<'_, PyAny>, file: Option<PathBuf>) -> PyResult<Self> {
         if let Ok(text) = content.extract::<String>() {
+            if text.ends_with(".toml") && !text.contains('\n') {
+                let message = format!("{text:?} is the name of a file: use Scene.read({text:?})");
+                return Err(raised(Error::Usage(message)));
+            }
             return Self::parsed("text", text, file.unwrap_or_default());
         }
         let text = toml::to_string_pretty(&table(content.cast::<PyMapping>()?, "")?)

@@ -103,6 +103,8 @@ def test_scenes_are_copied_and_pickled(tmp_path: Path) -> None:
     with pytest.raises(ic.Error, match="not valid TOML") as caught:
         ic.Scene("nonsense")
     assert caught.value.exit_status == 3
+    with pytest.raises(ic.Error, match=r"use Scene\.read"):
+        ic.Scene("my-impact.toml")
 
 
 def test_models_are_compared_with_the_reference() -> None:

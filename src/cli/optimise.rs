@@ -247,8 +247,10 @@ fn table(document: &OptimumDocument) -> String {
                 words(optimum.objective).to_lowercase()
             ));
         }
-        if variable.on_bound {
-            lines.push("    on a bound: a better value may lie outside".into());
+        match variable.extreme {
+            Some(extreme) => lines.push(format!("    on the {extreme} permitted value")),
+            None if variable.on_bound => lines.push("    on a bound: a better value may lie outside".into()),
+            None => {}
         }
     }
     if let Some(confirmation) = &document.confirmation {

@@ -54,7 +54,15 @@ pub fn by_heading<'h>(
         let factor = factor.map_err(|reason| format!("column `{heading}`: {reason}"))?;
         Ok(Column { name, index, factor, offset: 0.0 })
     };
-    let columns: Vec<Column> = header.into_iter().enumerate().map(named).collect::<Result<_, String>>()?;
+    let headings: Vec<&str> = header.into_iter().collect();
+    if let [only] = headings[..]
+        && only.contains(';')
+    {
+        return Err(
+            "the columns are separated by `;`; a comma between columns and a decimal point are needed".into(),
+        );
+    }
+    let columns: Vec<Column> = headings.into_iter().enumerate().map(named).collect::<Result<_, String>>()?;
     let twice = |(k, column): (usize, &Column)| columns[..k].iter().any(|other| other.name == column.name);
     match columns.iter().enumerate().find(|column| twice(*column)) {
         Some((_, column)) => Err(format!("two columns are called `{}`", column.name)),
@@ -67,9 +75,15 @@ pub fn by_heading<'h>(
 /// # Errors
 /// One sentence with those there are.
 pub fn known_column(name: &str, known: &[Curve]) -> Result<(&'static str, &'static str), String> {
-    let mut all = std::iter::once(("time", "s")).chain(known.iter().map(|curve| (curve.name, curve.unit)));
+    let all = std::iter::once(("time", "s")).chain(known.iter().map(|curve| (curve.name, curve.unit)));
     all.clone().find(|(other, _)| *other == name).ok_or_else(|| {
-        let names: Vec<&str> = all.by_ref().map(|(name, _)| name).collect();
+        // several kinds of scenes have curves of the same name
+        let mut names: Vec<&str> = Vec::new();
+        for (name, _) in all {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
         let hint = suggestion(name, names.iter().copied()).map(|near| format!("; did you mean `{near}`?"));
         format!(
             "`{name}` is not a known column{} (there are: {})",

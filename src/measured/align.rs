@@ -217,8 +217,8 @@ impl Alignment<'_> {
                         "negate {quantity} in the file: z points from the inner to the outer side, so that an outer body that strikes and an inner body that flies off have negative velocities"
                     ),
                     format!(
-                        "{quantity} has the wrong sign: negated it differs from the scene's impact by {:.0} % of its span, as it is by {:.0} %",
-                        share[1], share[0]
+                        "`{quantity}` has the wrong sign: it differs from the scene's impact by {:.0} % of its range; with the sign reversed, by {:.0} %",
+                        share[0], share[1]
                     ),
                 );
             }
@@ -270,7 +270,7 @@ impl Alignment<'_> {
             let early = samples().take_while(|(t, _)| *t < 0.0).count();
             return Err(Error::Scene(miette::miette!(
                 help = "record at least one period of the bandwidth and some samples more of free flight before the first contact",
-                "{}: {} has {early} samples before the first contact, {} of them earlier than {} before it, as far as the bandwidth of {} smears the impact; at least {FEWEST} are needed there for its offset",
+                "{}: `{}` has {early} samples before the first contact, {} of them earlier than {} before it (bandwidth {}); at least {FEWEST} of these are needed to determine the offset",
                 self.record.file.display(),
                 channel.quantity,
                 before.len(),

@@ -105,6 +105,7 @@ mod tests {
         };
         for (file, part) in [
             (text("time [us],outer_speed,inner_velocity", rows()), "`outer_speed` is not a known column"),
+            (text("time [us];outer_velocity [mm/s]", rows()), "the columns are separated by `;`"),
             (
                 text("time [um],outer_velocity,inner_velocity", rows()),
                 "`um` is the unit of something else; a time in s is needed",

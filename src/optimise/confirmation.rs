@@ -100,6 +100,7 @@ mod tests {
             bounds: [0.0, 9.0],
             optimum: 6.0,
             on_bound: false,
+            extreme: None,
             range_within_1_percent: [5.5, 6.5],
             curvature: None,
             profile,

@@ -9,6 +9,8 @@ pub const PROFILE_POINTS: usize = 61;
 pub const DEAR_POINTS: usize = 13;
 /// Loss of the objective, relative, that bounds the range.
 const LOSS: f64 = 0.01;
+/// How far beyond a bound a value is tried, relative to the bounds' distance.
+const BEYOND: f64 = 1e-6;
 /// Half the base of the parabola whose curvature is given, relative to the bounds' distance.
 const BASE: f64 = 0.01;
 
@@ -25,6 +27,9 @@ pub struct Neighbourhood {
     pub optimum: f64,
     /// Whether the optimum lies on a bound: a better value may lie outside.
     pub on_bound: bool,
+    /// "smallest" or "largest" if the fields permit no value beyond that bound.
+    #[serde(skip)]
+    pub extreme: Option<&'static str>,
     /// Range around the optimum within which the objective stays within 1 % of the best, cut at the bounds.
     pub range_within_1_percent: [f64; 2],
     /// Second derivative of the objective by the unit; `None` at a bound or where there is no result.
@@ -60,13 +65,21 @@ impl Neighbourhood {
         let step = BASE * width;
         let inside = at - step >= low && at + step <= high;
         let sides = inside.then(|| Some((objective(at - step)?, objective(at + step)?))).flatten();
+        let on_bound = (at - low).min(high - at) <= 1e-3 * width;
+        let (beyond, extreme) = if at - low < high - at {
+            (low - BEYOND * width, "smallest")
+        } else {
+            (high + BEYOND * width, "largest")
+        };
+        let is_permitted = variable.fields.iter().all(|field| field.check(beyond).is_ok());
         let place = |k: usize| low + width * k as f64 / (points - 1) as f64;
         Neighbourhood {
             field: variable.name(),
             unit: variable.fields[0].unit(),
             bounds: [low, high],
             optimum: at,
-            on_bound: (at - low).min(high - at) <= 1e-3 * width,
+            on_bound,
+            extreme: (on_bound && !is_permitted).then_some(extreme),
             range_within_1_percent: [end(low), end(high)],
             curvature: sides.map(|(left, right)| (left - 2.0 * best + right) / (step * step)),
             profile: (0..points).filter_map(|k| Some([place(k), objective(place(k))?])).collect(),
@@ -93,5 +106,10 @@ mod tests {
         let found = Neighbourhood::of(&variable, 0.06, 0.8, PROFILE_POINTS, |x| Some(0.8 * x / 0.06));
         assert!(found.on_bound && found.curvature.is_none(), "{found:?}");
         assert!((found.range_within_1_percent[0] - 0.0594).abs() < 1e-5, "{found:?}");
+        assert_eq!(found.extreme, None);
+        // no gap is negative
+        let variable = Variable::parse("inner.gap=0um..20um", &template).expect("variable");
+        let found = Neighbourhood::of(&variable, 0.0, 0.8, PROFILE_POINTS, |x| Some(0.8 - x));
+        assert_eq!(found.extreme, Some("smallest"));
     }
 }

@@ -4,7 +4,7 @@
 use super::summary_column::{SummaryColumn, degrees};
 use super::trust::SMALL;
 use crate::comparison::{ModelComparison, SceneComparison};
-use crate::format::percent_above;
+use crate::format::{percent_above, significant};
 
 /// The largest difference of a model among the columns.
 struct Largest<'c> {
@@ -75,7 +75,11 @@ fn sentence(model: &str, finding: &Finding) -> String {
         }
         Finding::Differs(Largest { column, off }) => {
             let estimates = if *off > 0.0 { "overestimates" } else { "underestimates" };
-            format!("Model {model} {estimates} the {} by {}.", column.phrase, percent_above(*off))
+            format!(
+                "Model {model} {estimates} the {} by {} %.",
+                column.phrase,
+                significant(100.0 * off.abs(), 2)
+            )
         }
     }
 }

@@ -36,7 +36,7 @@ pub(crate) fn accuracy(columns: &[SummaryColumn], model: &ModelComparison) -> St
     }
     let truncation = model.summary.truncation_error.filter(|error| *error > SMALL);
     let truncation =
-        truncation.map(|error| format!("the truncated modes make an estimated {}", percent_above(error)));
+        truncation.map(|error| format!("the truncation error is about {}", percent_above(error)));
     std::iter::once(phrases.join(", ")).chain(truncation).collect::<Vec<_>>().join("; ")
 }
 
@@ -45,16 +45,18 @@ fn of_group(group: &[SummaryColumn], model: &ModelComparison) -> Option<String> 
     let rows: Vec<(&SummaryColumn, &Discrepancy)> =
         group.iter().filter_map(|c| Some((c, model.discrepancy(c.quantity)?))).collect();
     let first = group.first().filter(|_| !rows.is_empty())?;
+    // in a sentence, not above columns
+    let what = if first.heading == "contact ends" { "end of contact" } else { first.heading };
     let size = |is_angle: bool, row: &Discrepancy, of: Option<f64>| {
         let scale = if is_angle { Some(1.0) } else { row.reference.map(f64::abs).filter(|r| *r != 0.0) };
         of.zip(scale).map(|(value, scale)| value.abs() / scale).filter(|v| v.is_finite())
     };
     let sizes: Option<Vec<f64>> = rows.iter().map(|(c, row)| size(c.is_angle, row, row.difference)).collect();
     let Some(worst) = sizes.map(|sizes| sizes.into_iter().fold(0.0, f64::max)) else {
-        return Some(format!("{} not determined", first.heading));
+        return Some(format!("{what} not determined"));
     };
     let band = rows.iter().filter_map(|(c, row)| size(c.is_angle, row, row.uncertainty)).fold(0.0, f64::max);
-    Some(phrase(first.heading, rows.len() > 1, worst, band, first.is_angle))
+    Some(phrase(what, rows.len() > 1, worst, band, first.is_angle))
 }
 
 fn phrase(what: &str, several: bool, worst: f64, band: f64, is_angle: bool) -> String {

@@ -1,6 +1,6 @@
 //! What a discrepancy shows when the inputs are uncertain (ASME V&V 20-2009, section 1-6).
 //!
-//! The error E = S - D of a result S against D, a reference or the mean of measurements, is held against the standard uncertainty of
+//! The error E = S - D of a result S against D, a reference or the mean of measurements, is compared with the standard uncertainty of
 //! the comparison, u_val^2 = u_num^2 + u_input^2 + u_D^2: of the numerical solution, of the inputs, of D. The error of the model lies
 //! within E ± 2 u_val in 95 % of all cases.
 //!
@@ -57,7 +57,7 @@ pub enum Shown {
     /// |E| <= u_val: nothing.
     #[serde(rename = "within")]
     Within,
-    /// u_val < |E| <= 2 u_val: that would happen to a right model now and then.
+    /// u_val < |E| <= 2 u_val: a correct model may differ this much.
     #[serde(rename = "undecided")]
     Undecided,
     /// |E| > 2 u_val: an error of the model.
@@ -126,10 +126,10 @@ impl Assessment {
         let [size, uncertainty, both] = [error.abs(), u_val, COVERAGE * u_val].map(|v| with_unit(v, to, 2));
         let sentence = match verdict {
             Shown::Within => format!(
-                "|E| = {size} is within u_val = {uncertainty}: inputs known no better show no error of the model"
+                "|E| = {size} is within u_val = {uncertainty}: with these input uncertainties no model error is shown"
             ),
             Shown::Undecided => format!(
-                "|E| = {size} lies between u_val = {uncertainty} and twice that: a right model would be off as far now and then"
+                "|E| = {size} lies between u_val = {uncertainty} and twice that: a correct model may differ this much"
             ),
             Shown::ModelError => {
                 format!("|E| = {size} is more than 2 u_val = {both}: the model is in error, by E ± {both}")
@@ -166,7 +166,7 @@ fn decisive(error: f64, u_val: f64, inputs: &BTreeMap<String, f64>) -> Option<St
             "`{name}` has the largest share of u_val^2 ({share:.0} %); that alone would not show an error of that size, all inputs known better would"
         )
     } else {
-        "no input known better would show an error of that size: the numbers it is between are not known so well".to_owned()
+        "better known inputs would not help: the uncertainty of the compared values is too large".to_owned()
     })
 }
 
@@ -237,6 +237,6 @@ mod tests {
         );
         assert!(sentence(0.02).contains("all inputs known better would"), "{}", sentence(0.02));
         let coarse = Assessment::of(0.02, (None, Some(0.03)), &propagated()).expect("numbers");
-        assert!(coarse.would_decide.expect("none shown").starts_with("no input known better"));
+        assert!(coarse.would_decide.expect("none shown").starts_with("better known inputs would not help"));
     }
 }

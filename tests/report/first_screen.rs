@@ -130,7 +130,7 @@ fn the_answer_is_the_terminals_and_no_better_than_the_discrepancies() {
         for (group, names) in [
             ("efficiency", &["efficiency"][..]),
             ("peak force", &["outer_force_peak", "inner_force_peak"]),
-            ("contact ends", &["outer_contact_end", "inner_contact_end"]),
+            ("end of contact", &["outer_contact_end", "inner_contact_end"]),
         ] {
             let (stated, found) = (of(group), worst(names));
             assert!(stated >= found && stated <= 1.11 * found + 1e-9, "{group}: {stated} for {found}");

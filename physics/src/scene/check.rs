@@ -138,7 +138,7 @@ impl<'a> Checker<'a> {
                     return Some(Checked::Text(text.to_string()));
                 }
                 let help = did_you_mean(text, choices.iter().map(|c| c.name)) + &alternatives(field);
-                self.fault(place, value, "which it can't be", "not valid", help)
+                self.fault(place, value, "which is not one of its values", "not valid", help)
             }
             (Kind::Quantity(dimension, bound), _) => {
                 let number = self.quantity(place, value, *dimension, *bound)?;
@@ -266,7 +266,7 @@ impl<'a> Checker<'a> {
             "{}{known}; a material is a table [materials.{text}] with youngs_modulus, poisson_ratio, density",
             did_you_mean(text, self.materials.iter().map(String::as_str))
         );
-        self.fault(place, value, "which is no material of this scene", "unknown material", help)
+        self.fault(place, value, "which is not a material of this scene", "unknown material", help)
     }
 
     fn count(&mut self, place: &Place, value: &Spanned<DeValue>, low: u64, high: u64) -> Option<Checked> {

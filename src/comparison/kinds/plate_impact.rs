@@ -257,7 +257,7 @@ fn switches(modes: ModeCounts) -> [String; CAUSES.len()] {
         format!("model B unchanged → relative error {TIGHT:e}"),
         format!("{b} → {many_kirchhoff} Kirchhoff modes"),
         format!("Kirchhoff plate → mean of both faces of the continuum plate ({c} modes and residual)"),
-        "contact with half-spaces → contact with the plate, squeezed from both sides".into(),
+        "contact with half-spaces → contact with the plate, loaded on both faces".into(),
         "rigid → elastic spheres: model C".into(),
         format!("{c} → {many_continuum} continuum modes"),
     ]

@@ -47,10 +47,26 @@ pub(crate) fn worded(verdict: Verdict, words: &str) -> Markup {
     html! { span class=(class) { (words) } }
 }
 
-/// Whether the assumptions hold: beside the verdict, so that a pass alone does not mislead.
+/// The verdict of a scene.
+pub(crate) fn scene_badge(verdict: Verdict) -> Markup {
+    let title = "Verdict: whether the differences of the models from the reference are within the scene's tolerances.";
+    html! { span title=(title) { (badge(verdict)) } }
+}
+
+/// Whether the assumptions hold: with the verdict, so that a pass alone does not mislead.
 pub(crate) fn assumptions_badge(words: &str) -> Markup {
-    let class = if words == HOLD { "verdict open" } else { "verdict undecided" };
-    html! { span class=(class) { (words) } }
+    let (class, title) = if words == HOLD {
+        (
+            "verdict pass",
+            "All checked assumptions that the models and the reference share hold in this scene.",
+        )
+    } else {
+        (
+            "verdict undecided",
+            "An assumption that the models and the reference share is violated: both may differ from reality in the same way.",
+        )
+    };
+    html! { span class=(class) title=(title) { (words) } }
 }
 
 /// Something wider than a phone, which scrolls by itself, also by keyboard.

@@ -71,16 +71,15 @@ fn counts(scenes: &[ExistingScene]) -> String {
     if verdicts.is_empty() {
         return "Nothing is gated: no scene has tolerances.".into();
     }
-    let count = |verdict| verdicts.iter().filter(|v| **v == verdict).count();
-    format!(
-        "{} scene{}, {} gated quantities: {} within their tolerances, {} undecided, {} not within.",
-        scenes.len(),
-        if scenes.len() == 1 { "" } else { "s" },
-        verdicts.len(),
-        count(Verdict::Pass),
-        count(Verdict::Undecided),
-        count(Verdict::Fail)
-    )
+    let count = |verdict: Verdict| verdicts.iter().filter(|v| **v == verdict).count();
+    let [pass, undecided, fail] = [Verdict::Pass, Verdict::Undecided, Verdict::Fail].map(count);
+    let found = if pass == verdicts.len() {
+        "all within it".to_owned()
+    } else {
+        format!("{pass} within it, {undecided} undecided, {fail} not within it")
+    };
+    let plural = if scenes.len() == 1 { "" } else { "s" };
+    format!("{} scene{plural}, {} quantities with a tolerance: {found}.", scenes.len(), verdicts.len())
 }
 
 const HEADINGS: [(&str, bool); 8] = [

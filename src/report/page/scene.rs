@@ -5,7 +5,7 @@ use crate::format::{model_name, prefixed, with_unit};
 use crate::report::conclusion::assumptions;
 use crate::report::export::Export;
 use crate::report::page::facts::facts;
-use crate::report::page::html::{assumptions_badge, badge, model_badge, page};
+use crate::report::page::html::{assumptions_badge, model_badge, page, scene_badge};
 use crate::report::page::section::discrepancy::{checks, contradictions, model_section};
 use crate::report::page::section::{self, Section, contents, sections};
 use crate::report::page::validated_map::ValidatedMap;
@@ -33,7 +33,7 @@ pub fn scene_page(report: &SceneReport) -> String {
     let name = &comparison.scene;
     let all = all_sections(report);
     let body = html! {
-        h1 { (name) " " (badge(comparison.verdict)) @if let Some(words) = assumptions(comparison) { " " (assumptions_badge(words)) } }
+        h1 { (name) " " (scene_badge(comparison.verdict)) @if let Some(words) = assumptions(comparison) { " " (assumptions_badge(words)) } }
         p.soft { (report.scene.description) }
         (contents(&all))
         (contradictions("reference", &comparison.integrity))
@@ -127,7 +127,7 @@ fn provenance(report: &SceneReport) -> Markup {
             (facts(&[("", Some(&report.provenance))]))
         }
         details {
-            summary { "Checks of the reference against itself (" (comparison.integrity.len()) ")" }
+            summary { "Internal consistency checks of the reference (" (comparison.integrity.len()) ")" }
             (checks(&comparison.integrity))
         }
     }

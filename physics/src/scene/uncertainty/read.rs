@@ -103,7 +103,12 @@ impl Checker<'_> {
             // a number that is there and wrong is told of at its own place
             if self.problems.is_empty() {
                 let message = format!("`{path}`: the scene file has no nominal value `{}`", entry.field);
-                let help = format!("state `{}` too", entry.field);
+                let help = match entry.field.rsplit_once('.') {
+                    Some((table, key)) => {
+                        format!("write the field in its table: `{key} = ...` under `[{table}]`")
+                    }
+                    None => format!("write the field at the top of the file: `{} = ...`", entry.field),
+                };
                 self.problems.add(entry.place.clone(), message, "no nominal value", help);
             }
             return None;
@@ -157,7 +162,7 @@ impl Checker<'_> {
                     did_you_mean(name, names()),
                     names().collect::<Vec<_>>().join(", ")
                 );
-                ("is no numeric field of the scene".to_owned(), help)
+                ("is not a numeric field of the scene".to_owned(), help)
             }
         };
         let message = format!("`uncertainty.{name}`: `{name}` {message}");

@@ -8,11 +8,11 @@ use crate::report::page::html::{detailed, scrolled};
 use crate::report::page::prose::prose;
 use maud::{Markup, html};
 
-const EXPLANATION: &str = "What each simplification of model B adds to its difference from the reference. They are \
-    given up from top to bottom, one at a time; the parts belong to this order, another one would share the \
-    difference out otherwise. Parts and remainder add up to the difference. The remainder, the best model C less the \
-    reference, is explained if it lies within its bound: the uncertainty (95 %) of the reference and the uncertainty \
-    of model C, added as independent. Reported, not gated.";
+const EXPLANATION: &str = "What each simplification of model B adds to its difference from the reference. The \
+    simplifications are removed one after another, from top to bottom; another order gives other parts. Parts and \
+    remainder add up to the difference. The remainder is model C with most modes minus the reference. It is explained \
+    if it lies within its bound: the uncertainty (95 %) of the reference and the uncertainty of model C, added as \
+    independent. Reported, not gated.";
 
 /// Section of the page; nothing if there is no budget.
 pub(crate) fn budget_html(comparison: &SceneComparison) -> Markup {
@@ -48,11 +48,15 @@ pub(crate) fn budget_html(comparison: &SceneComparison) -> Markup {
                 tr { th scope="row" { "uncertainty of C" }
                     @for row in rows { (cell(row, "model_uncertainty", row.model_uncertainty, None)) } }
                 tr { th scope="row" { "explained" }
-                    @for row in rows { td { span class=(format!("verdict {}", row.explained)) { (row.explained) } } } }
+                    @for row in rows { td { span class=(format!("verdict {}", row.explained)) { (explained(row)) } } } }
             }
         } }))
         ul.soft { @for part in &first.parts { li { (cause_name(&part.cause)) ": " (prose(&part.switch)) } } }
     }
+}
+
+fn explained(row: &QuantityBudget) -> &'static str {
+    if row.explained.passed() { "yes" } else { "no" }
 }
 
 fn cell(row: &QuantityBudget, field: &str, value: f64, uncertainty: Option<f64>) -> Markup {
@@ -101,7 +105,7 @@ pub(crate) fn budget_markdown(rows: &[QuantityBudget]) -> String {
         text += &line(&cause_name(&part.cause), &cell);
     }
     text += &line("remainder", &|row| shown(row, row.remainder, Some(row.bound)));
-    text += &line("explained", &|row| row.explained.to_string());
+    text += &line("explained", &|row| explained(row).to_owned());
     text += "\nThe uncertainty of the remainder is its bound.\n\n";
     for part in &first.parts {
         text += &format!("- {}: {}\n", cause_name(&part.cause), part.switch);

@@ -16,7 +16,7 @@ pub(crate) fn model_section(model: &ModelComparison) -> Markup {
         (contradictions(&model.model, &model.integrity))
         (undecided(&model.discrepancies))
         @if let Some(pressure) = &model.summary.contact_pressure { (pressures("Model", pressure)) }
-        details { summary { "Discrepancies (" (model.discrepancies.len()) ")" }
+        details { summary { "All " (model.discrepancies.len()) " quantities" }
         (scrolled(&format!("Discrepancies of model {}", model.model), &html! { table.discrepancies data-model=(model.model) {
             thead { tr {
                 th scope="col" { "quantity" } th.left scope="col" { "verdict" }
@@ -28,8 +28,8 @@ pub(crate) fn model_section(model: &ModelComparison) -> Markup {
             } }
             tbody { @for row in &model.discrepancies { (discrepancy_row(row, common_mesh)) } }
         } }))
-        p.soft { "Difference is reduced minus reference. A row without tolerance is not gated. Bias is the known "
-            "discrepancy about which the tolerance lies. A distance of curves is relative to the reference's peak. "
+        p.soft { "Difference is reduced minus reference. A row without tolerance is not gated. Bias is the declared "
+            "error of the model; the tolerance applies to the difference from it. A distance of curves is relative to the reference's peak. "
             "|E| against u (ASME V&V 20): a difference within the uncertainty of the reference shows no error of the model."
             @if common_mesh {
                 " Model and reference are solutions on the same mesh and have its error in common: verdicts and u are of the "
@@ -51,7 +51,7 @@ pub(crate) fn model_section(model: &ModelComparison) -> Markup {
             "corridor, phase, magnitude and slope score, 1 is best. Reported, not gated." }
         }
         details {
-            summary { "Checks of the result against itself (" (model.integrity.len()) ")" }
+            summary { "Internal consistency checks (" (model.integrity.len()) ")" }
             (checks(&model.integrity))
         }
     }

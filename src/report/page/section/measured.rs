@@ -1,6 +1,6 @@
 //! The measured records in the report: alignment, efficiencies, curve metrics.
 
-use crate::format::{prefixed, significant, with_unit, words};
+use crate::format::{minus, prefixed, significant, with_unit, words};
 use crate::kinds::KINDS;
 use crate::measured::{AlignedRecord, Measured, MeasuredComparison};
 use crate::plot::{ChartPanel, Series, chart};
@@ -65,6 +65,18 @@ pub(crate) fn effects(measured: &Measured) -> impl Iterator<Item = (String, &str
     })
 }
 
+/// A time in s to 0.01 µs, finer than any shift is known.
+fn microseconds(time: f64) -> String {
+    // what rounds to zero has no sign
+    let rounded = (1e8 * time).round() / 1e2 + 0.0;
+    minus(&format!("{rounded:.2} µs"))
+}
+
+/// The unit of a drift.
+fn per_second(unit: &str) -> String {
+    if unit == "m/s" { "m/s²".into() } else { format!("{unit}/s") }
+}
+
 fn alignment(measured: &Measured) -> Rows {
     let heading =
         ["record", "samples", "first contact at", "offset and drift", "efficiency", "uncertainty (95 %)"];
@@ -76,10 +88,11 @@ fn alignment(measured: &Measured) -> Rows {
                 let mut curves = KINDS.iter().flat_map(|kind| kind.curves());
                 let unit = curves.find(|curve| curve.name == c.quantity).map_or("1", |curve| curve.unit);
                 format!(
-                    "{}: {}, {} {unit}/s",
+                    "{}: {}, {} {}",
                     words(c.quantity),
                     with_unit(c.offset, prefixed(unit, c.offset), 4),
-                    significant(c.drift, 4)
+                    significant(c.drift, 2),
+                    per_second(unit)
                 )
             })
             .collect();
@@ -89,7 +102,7 @@ fn alignment(measured: &Measured) -> Rows {
         vec![
             name(record),
             record.samples.to_string(),
-            with_unit(record.shift, prefixed("s", record.shift), 6),
+            microseconds(record.shift),
             corrections.join("; "),
             percent(record.efficiency, 4),
             percent(record.efficiency_uncertainty, 2),
@@ -111,7 +124,7 @@ fn metrics(measured: &Measured) -> Rows {
                     .map_or("–".into(), |own| format!("{} %", significant(100.0 * own, 4))),
                 comparator
                     .efficiency_difference
-                    .map_or("–".into(), |d| format!("{} points", significant(100.0 * d, 3))),
+                    .map_or("–".into(), |d| format!("{} percentage points", significant(100.0 * d, 3))),
                 words(&curve.quantity),
                 score(curve.sprague_geers),
                 score(curve.russell),
@@ -125,7 +138,7 @@ fn metrics(measured: &Measured) -> Rows {
 /// What the comparators' efficiencies show; nothing if the inputs are certain.
 fn validation(measured: &Measured) -> Option<Rows> {
     let heading = ["result", "E", "u_val", "u_num", "u_input", "u_D", "shows", "area", "above, below"];
-    let points = |value: f64| format!("{} points", significant(100.0 * value, 3));
+    let points = |value: f64| format!("{} percentage points", significant(100.0 * value, 3));
     let row = |comparator: &MeasuredComparison| {
         let of = comparator.validation.as_ref()?;
         let known = |u: Option<f64>| u.map_or("–".into(), points);
@@ -160,7 +173,7 @@ pub(crate) fn sentence(measured: &Measured) -> String {
         Some(deviation) => {
             let deviation = significant(100.0 * deviation, 2);
             format!(
-                "Measured efficiency of {} impacts: mean {mean} %, standard deviation {deviation} points.",
+                "Measured efficiency of {} impacts: mean {mean} %, standard deviation {deviation} percentage points.",
                 series.count
             )
         }

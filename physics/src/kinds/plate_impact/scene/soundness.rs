@@ -19,11 +19,12 @@ const SLOWEST_CHARGE: f64 = 1e5;
 pub(in crate::kinds) fn slenderness(plate: &Plate) -> Rule {
     let ratio = plate.thickness / plate.radius;
     let [least, most] = SLENDERNESS;
+    let times = if ratio < 1.0 { format!("{ratio:.1e}") } else { format!("{ratio:.1}") };
     Rule {
         fields: vec!["plate.thickness", "plate.radius"],
         holds: (least..=most).contains(&ratio),
         message: format!(
-            "the plate is no plate: `plate.thickness` is {ratio:.3e} times `plate.radius`, but it must be {least:e} to {most} times"
+            "`plate.thickness` is {times} times `plate.radius`; it must be between {least:e} and {most} times"
         ),
         help: "is one of them in the wrong unit?",
     }

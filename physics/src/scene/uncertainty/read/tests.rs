@@ -101,7 +101,7 @@ fn an_invalid_distribution_is_reported_with_its_place() {
         ),
         (
             "\n\"inner.gap\" = { normal = \"1 um\" }",
-            ["no nominal value `inner.gap`", "state `inner.gap` too"],
+            ["no nominal value `inner.gap`", "`gap = ...` under `[inner]`"],
         ),
         ("\n\"reduced.modes\" = \"1 %\"", ["takes whole numbers", "leave it out"]),
         ("\nfriction = \"1 %\"", ["only the reference uses it", "leave it out"]),
