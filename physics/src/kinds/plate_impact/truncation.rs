@@ -85,18 +85,12 @@ pub(super) fn estimate(
     }
     truncation.error += undamped;
     let warning = (truncation.error > LARGEST).then(|| {
+        let enough = RUNGS.into_iter().find(|n| *n > modes && of(*n).error + undamped <= LARGEST);
         // of a continuum some modes are no bending modes
-        let enough = fewest_above(modes, |n| of(n).error + undamped <= LARGEST)
-            .map(|bending| bending + system.modes - modes);
+        let enough = enough.map(|bending| bending + system.modes - modes);
         warning(model, system.modes, truncation, enough)
     });
     Ok(Truncation { error: truncation.error, warning })
-}
-
-/// The fewest of [`RUNGS`] above `modes` that are `enough`, by bisection: each costs an impact, of which some have thousands of contacts.
-fn fewest_above(modes: usize, enough: impl Fn(usize) -> bool) -> Option<usize> {
-    let more = &RUNGS[RUNGS.partition_point(|n| *n <= modes)..];
-    more.get(more.partition_point(|n| !enough(*n))).copied()
 }
 
 /// The same of a plate that is struck beside its centre, from its difference to many modes and the static flexibility of the waves
@@ -170,24 +164,4 @@ fn warning(model: Model, modes: usize, truncation: TruncationError, enough: Opti
         "model {model} with {modes} mode{plural}: modal truncation error about {}{most}; {remedy}",
         estimated_percent(truncation.error)
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::cell::Cell;
-
-    #[test]
-    fn the_fewest_modes_that_are_enough_are_found_with_few_impacts() {
-        for least in [17, 20, 33, 128, 192, 193] {
-            let impacts = Cell::new(0);
-            let found = fewest_above(16, |n| {
-                impacts.set(impacts.get() + 1);
-                n >= least
-            });
-            assert_eq!(found, RUNGS.into_iter().find(|n| *n > 16 && *n >= least), "{least}");
-            assert!(impacts.get() <= 5, "{least}: {} impacts", impacts.get());
-        }
-        assert_eq!(fewest_above(192, |_| true), None);
-    }
 }
