@@ -78,8 +78,8 @@ pub fn all_within(error: f64, options: Options) -> Options {
 }
 
 /// Integrates the impact of `system` by `run`, unless it is a simple one with smaller and smaller tolerances until final
-/// velocities, force peaks and impulses differ by at most ten times the tolerance of `options`; where these name an error of all
-/// results, until times of separation and numbers of contacts agree, too. The last one is the result, its
+/// velocities, force peaks and impulses differ by at most ten times the tolerance of `options` and no contact is nearly missed; where
+/// these name an error of all results, until times of separation and numbers of contacts agree, too. The last one is the result, its
 /// [`Integration::error_estimate`] the difference to the one before, infinite where numbers of contacts differ.
 ///
 /// # Errors
@@ -139,7 +139,7 @@ fn repeated(
             || contacts <= RELEASED
             || contacts.is_infinite() && !(is_strongly_damped(system) || separates_slowly(&next));
         best = Integration { error_estimate: Some(change), ..next };
-        let open = options.results.is_some() && is_countable(&best) && may_be_missed(&best, change);
+        let open = is_countable(&best) && may_be_missed(&best, change);
         if (change <= enough && !open && released) || best.steps > LONG {
             break;
         }
