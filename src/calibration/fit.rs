@@ -61,13 +61,16 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>>> FitProblem<'_, F> {
         (self.residuals)(&values).map(DVector::from_vec)
     }
 
-    /// Whether the data change along `direction` by their `slope` over a long step too.
-    fn is_confirmed(&self, direction: &DVector<f64>, slope: f64) -> bool {
+    /// Whether the data change along `direction` by their `slope` over a long step too, apart from what the orthonormal courses `known`
+    /// explain: where inputs act through one number alone, a straight step changes it, too, but only as its own direction does.
+    fn is_confirmed(&self, direction: &DVector<f64>, slope: f64, known: &DMatrix<f64>) -> bool {
         let moved = |step: f64| self.of(&(&self.at + direction * step));
+        let is_left = |(after, before): (DVector<f64>, DVector<f64>)| {
+            let change = (after - before) / (2.0 * LONG_STEP);
+            (&change - known * known.tr_mul(&change)).norm() > CONFIRMED * slope
+        };
         // where the model has no result the short step is all there is
-        moved(LONG_STEP)
-            .zip(moved(-LONG_STEP))
-            .is_none_or(|(after, before)| (after - before).norm() / (2.0 * LONG_STEP) > CONFIRMED * slope)
+        moved(LONG_STEP).zip(moved(-LONG_STEP)).is_none_or(is_left)
     }
 
     fn slopes(&self) -> Option<DMatrix<f64>> {
@@ -176,15 +179,24 @@ fn fit_statistics<F: Fn(&[f64]) -> Option<Vec<f64>>>(
     let mut order: Vec<usize> = (0..unknowns).collect();
     order.sort_by(|a, b| singular[*b].total_cmp(&singular[*a]));
     let directions = parts.v_t.unwrap_or_else(|| DMatrix::zeros(unknowns, unknowns));
-    let of_data = along(&parts.u.unwrap_or_else(|| DMatrix::zeros(at.len(), unknowns)), blocks);
+    let courses = parts.u.unwrap_or_else(|| DMatrix::zeros(at.len(), unknowns));
+    let of_data = along(&courses, blocks);
     let deviation = |k: usize| of_data[(k, k)].max(0.0).sqrt() / singular[k];
-    let is_identifiable = |k: &usize| {
-        let slope = singular[*k];
+    let is_identifiable = |k: usize, known: &[usize]| {
+        let slope = singular[k];
+        let is_confirmed = || {
+            let explained = courses.select_columns(known);
+            problem.is_confirmed(&directions.row(k).transpose(), slope, &explained)
+        };
         slope > ROUNDING * largest
-            && deviation(*k) < UNIDENTIFIABLE
-            && (slope > SMALL_SLOPE * largest || problem.is_confirmed(&directions.row(*k).transpose(), slope))
+            && deviation(k) < UNIDENTIFIABLE
+            && (slope > SMALL_SLOPE * largest || is_confirmed())
     };
-    let (known, unknown): (Vec<usize>, Vec<usize>) = order.iter().copied().partition(is_identifiable);
+    let (mut known, mut unknown) = (Vec::new(), Vec::new());
+    for k in order.iter().copied() {
+        let side = if is_identifiable(k, &known) { &mut known } else { &mut unknown };
+        side.push(k);
+    }
     let scaled =
         DMatrix::from_fn(unknowns, known.len(), |i, k| directions[(known[k], i)] / singular[known[k]]);
     let inner = DMatrix::from_fn(known.len(), known.len(), |i, j| of_data[(known[i], known[j])]);
@@ -265,6 +277,16 @@ mod tests {
         let found =
             fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
         assert_eq!(found.unidentifiable, [[3]], "{found:?}");
+    }
+
+    /// Data without noise show the slopes' own error: of inputs that act through one number alone it is a slope where there is none.
+    #[test]
+    fn the_error_of_slopes_is_no_slope() {
+        let angle = |p: &[f64], t: f64| (p[0] / p[1].powi(2) * t).sin();
+        let times = || (0..200).map(|k| 0.01 * f64::from(k));
+        let residuals = |p: &[f64]| Some(times().map(|t| angle(p, t) - angle(&[1.4, 1.05], t)).collect());
+        let found = fit(&[1.5, 1.0], &[1.5, 1.0], residuals, independent).expect("a minimum");
+        assert_eq!(found.unidentifiable, [[0, 1]], "{found:?}");
     }
 
     /// A small part of an unidentifiable direction counts where it is more than the deviation, and where louder data make both as large:

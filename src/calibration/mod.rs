@@ -276,6 +276,37 @@ mod tests {
         }
     }
 
+    /// A contact knows E* r^(1/2) alone, and with the mass of a sphere two numbers of its radius, density and modulus. Records without
+    /// noise, or with little, tell no more.
+    #[test]
+    fn what_acts_together_alone_is_named_in_clean_records_too() {
+        let text = SCENE.replace("[plate]", "[materials.ball]\nyoungs_modulus = \"210 GPa\"\npoisson_ratio = 0.3\ndensity = \"7780 kg/m^3\"\n\n[plate]");
+        let (before, outer) = text.split_once("[outer]").expect("an outer body");
+        let (sphere, after) = outer.split_once("[inner]").expect("an inner body");
+        let compact = "\nkind = \"compact\"\nmass = \"32 g\"\ntip_radius = \"10 mm\"\nmaterial = \"ball\"\nspeed = \"550 mm/s\"\n";
+        let sphere = sphere.replacen("\"steel\"", "\"ball\"", 1);
+        let modulus = "materials.ball.youngs_modulus";
+        for (outer, names, noise) in [
+            (compact, &["outer.tip_radius", modulus][..], 0.0),
+            (&sphere, &["outer.radius", "materials.ball.density", modulus], 0.0),
+            (&sphere, &["outer.radius", "materials.ball.density", modulus], 1e-5),
+        ] {
+            let text = format!("{before}[outer]{outer}[inner]{after}");
+            let template = Template::parse("scene", &text).expect("valid");
+            let fields: Vec<Field> = names.iter().map(|name| template.field(name).expect("there")).collect();
+            let numbers: Vec<(&Field, f64)> = fields
+                .iter()
+                .map(|field| (field, 1.03 * template.number(field).expect("a number")))
+                .collect();
+            let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+            let records = [record(&template, &numbers, noise, 1)];
+            let found =
+                calibrate(&template, &names, &records, Model::B, (BANDWIDTH, Speed::Scene)).expect("a fit");
+            assert_eq!(found.untold.len(), 1, "{names:?}: {found:?}");
+            assert!(found.inputs.iter().all(|input| input.standard_deviation.is_none()), "{found:?}");
+        }
+    }
+
     #[test]
     fn parameters_that_are_not_identifiable_are_reported() {
         let template = Template::parse("scene", SCENE).expect("shipped scene");

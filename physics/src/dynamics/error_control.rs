@@ -45,8 +45,10 @@ pub const ENOUGH: f64 = 10.0;
 const RELEASED: f64 = 3e-4;
 /// Sensitivity of a time of release from which on bodies part slowly, see [`ContactBalance::end_sensitivity`]; of a half-sine it is 1/pi.
 const SLOW_SEPARATION: f64 = 5.0;
-/// The same up to which they part so quickly that a vibration on the contact decides when: steps of the first solution do not follow it.
-const QUICK_SEPARATION: f64 = 0.05;
+/// The same up to which they part so quickly that a vibration on the contact decides when: steps of the first solution do not follow it,
+/// although forces and impulses are right. Of 795 random impacts with few contacts and steps the times of release were then off by up to
+/// 3.8e-4, of the others by 1.4e-5.
+const QUICK_SEPARATION: f64 = 0.1;
 
 /// Tolerance of the first solution over the error that all results may have ([`Options::results`]), and its least value. Of 3000 random
 /// impacts around Table 1 force peaks and times of separation then had up to 0.6 of that error.
@@ -76,8 +78,8 @@ pub fn all_within(error: f64, options: Options) -> Options {
 }
 
 /// Integrates the impact of `system` by `run`, unless it is a simple one with smaller and smaller tolerances until final
-/// velocities, force peaks and impulses differ by at most ten times the tolerance of `options`; where these name an error of all
-/// results, until times of separation and numbers of contacts agree, too. The last one is the result, its
+/// velocities, force peaks and impulses differ by at most ten times the tolerance of `options` and no contact is nearly missed; where
+/// these name an error of all results, until times of separation and numbers of contacts agree, too. The last one is the result, its
 /// [`Integration::error_estimate`] the difference to the one before, infinite where numbers of contacts differ.
 ///
 /// # Errors
@@ -137,7 +139,7 @@ fn repeated(
             || contacts <= RELEASED
             || contacts.is_infinite() && !(is_strongly_damped(system) || separates_slowly(&next));
         best = Integration { error_estimate: Some(change), ..next };
-        let open = options.results.is_some() && is_countable(&best) && may_be_missed(&best, change);
+        let open = is_countable(&best) && may_be_missed(&best, change);
         if (change <= enough && !open && released) || best.steps > LONG {
             break;
         }
@@ -189,6 +191,7 @@ fn is_simple(system: &System, result: &Integration, tolerance: f64) -> bool {
         && result.steps <= FEW_STEPS
         && result.contacts.iter().all(small)
         && !separates_slowly(result)
+        && !separates_quickly(result)
         && (inner.contacts == 0 || inner.impulse >= FULL_SHARE * outer.impulse)
 }
 
