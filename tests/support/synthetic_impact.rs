@@ -93,7 +93,7 @@ pub fn scene() -> Scene {
         }
         .into(),
         run: RunSettings { end_time: None },
-        reduced: ReducedSettings { model: Some(Model::B), modes: Some(16) },
+        reduced: ReducedSettings { model: Some(Model::B), modes: Some(16), frequencies: None },
         reference: ReferenceSettings {
             geometry: Geometry::Axisymmetric,
             elements_per_contact_radius: Some(12.0),
@@ -205,6 +205,8 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         contact_pressure: None,
         losses: None,
         solver: None,
+        mesh_error: None,
+        frequencies: Vec::new(),
         truncation_error: None,
         integration_error: None,
         choice: None,
