@@ -15,10 +15,7 @@ def main(out: Path) -> None:
     wall = occ.addBox(0, 0, 0, 2, 20, 20)
     solid = occ.fuse([(3, foot)], [(3, wall)])[0][0][1]
     occ.synchronize()
-    corner = [
-        tag
-        for _, tag in gmsh.model.getEntitiesInBoundingBox(1.9, -1, 2.9, 2.1, 21, 3.1, 1)
-    ]
+    corner = [tag for _, tag in gmsh.model.getEntitiesInBoundingBox(1.9, -1, 2.9, 2.1, 21, 3.1, 1)]
     occ.fillet([solid], corner, [4])
     occ.synchronize()
     gmsh.write(str(out))

@@ -6,6 +6,7 @@ use crate::comparison::{ModelComparison, compare_scene};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
 use crate::format::{measure, quantity, words};
+use crate::kinds;
 use crate::optimise::{Confirmation, Objective, Optimum, Problem, Robust, Variable, Watch, confirm};
 use crate::reference::{self, Resolution, Stored, Wish};
 use crate::report;
@@ -33,7 +34,7 @@ pub struct Arguments {
     /// Seal seat: mesh (.vtu) that is adapted to the dimensions [default: a coarse one]
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Reduced model [default: the scene's, or B, which needs no mesh]
+    /// Reduced model [default: the scene's, or B where there is one]
     #[arg(long)]
     model: Option<Model>,
     /// Number of modes [default: as in `reduced`]
@@ -120,8 +121,9 @@ pub(super) fn solve(
     if let Some(mesh) = &mesh {
         context.note(format_args!("mesh {}", mesh.path().display()));
     }
-    let usual = if mesh.is_some() { Model::C } else { Model::B };
-    let model = arguments.model.or(template.scene().reduced.model).unwrap_or(usual);
+    let own = kinds::of(template.scene()).models();
+    let usual = own.iter().find(|model| **model == Model::B).or(own.last()).copied();
+    let model = arguments.model.or(template.scene().reduced.model).or(usual).unwrap_or(Model::B);
     let within =
         arguments.within.as_ref().map(|text| template.field("intended.angle")?.parse(text)).transpose()?;
     let objective = Objective::of(arguments.objective.as_deref(), within, template.scene())?;
