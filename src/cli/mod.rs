@@ -84,7 +84,7 @@ enum Command {
     /// List what changed between two comparisons
     #[command(after_help = "Example: impactcheck diff old-report new-report --above 0.1%")]
     Diff(diff::Arguments),
-    /// Mesh the seat of a seal-seat scene
+    /// Mesh the seat of a seal-seat scene, or the body of an impact
     #[command(after_help = "Example: impactcheck mesh my-seat.toml --out my-seat.vtu")]
     Mesh(mesh::Arguments),
     /// Run a parameter study of the paper, or your own sweep
