@@ -120,8 +120,8 @@ pub struct Summary {
     /// efficiency's relative to at least 0.05, the velocity's to the impact speed. `None` if there is no estimate.
     #[serde(default)]
     pub truncation_error: Option<f64>,
-    /// Reduced models of a body from a mesh: the change of efficiency and force peaks, relative, from a mesh with elements twice as large.
-    /// `None` of other bodies, or if it is not known.
+    /// Reduced models of a body from a mesh: estimated error of efficiency and force peaks by the mesh, relative: half of the change from a mesh
+    /// with elements twice as large. `None` of other bodies, or if it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh_error: Option<f64>,
     /// Reduced models of a body from a mesh whose scene lists them: the lowest eigenfrequencies in Hz, ascending.
