@@ -50,7 +50,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let text = match &arguments.from {
         Some(body) => {
             let groups = reference::body_groups(body, arguments.unit.as_deref())?;
-            kinds::general_impact::scene_of_body(&file, body, arguments.unit.as_deref(), &groups)
+            kinds::scene_of_body(&file, body, arguments.unit.as_deref(), &groups)
         }
         None => arguments.kind.text.to_owned(),
     };

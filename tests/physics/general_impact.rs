@@ -229,12 +229,12 @@ fn scenes_that_contradict_themselves_are_refused_in_a_sentence() {
     let inner = "[inner]\nkind = \"sphere\"\nradius = \"10 mm\"\nmaterial = \"steel\"\n";
     let held = OUTER.replace("\"sphere\"\nradius = \"10 mm\"", "\"bender\"\nlength = \"30 mm\"\nfirst_frequency = \"400 Hz\"\ntip_stiffness = \"20 kN/m\"\ntip_mass = \"1 g\"\ntip_radius = \"5 mm\"");
     for (tables, said) in [
-        (format!("{OUTER}{PLATE}{RIGID}"), "the scene has [plate] and [wall]"),
+        (format!("{OUTER}{PLATE}{RIGID}"), "the scene has two of [plate], [body] and [wall]"),
         (format!("{OUTER}{WALL}rigid = true\n"), "`wall.material` and `wall.rigid` exclude each other"),
         (format!("{OUTER}[wall]\n"), "`wall.material` is missing"),
         (format!("{OUTER}[wall]\nrigid = false\n"), "`wall.material` is missing"),
         (format!("{OUTER}{RIGID}{inner}"), "nothing lies behind a wall"),
-        (OUTER.to_owned(), "`inner` is missing: without [plate] and [wall]"),
+        (OUTER.to_owned(), "`inner` is missing: without [plate], [body] and [wall]"),
         (format!("{OUTER}offset = \"1 mm\"\n{RIGID}"), "`outer.offset` is 0.001 m"),
         (format!("{OUTER}{inner}speed = \"-500 mm/s\"\n"), "must be greater than -0.5 m/s"),
         (
@@ -244,8 +244,15 @@ fn scenes_that_contradict_themselves_are_refused_in_a_sentence() {
         (format!("{OUTER}{RIGID}[reference]\n"), "`reference` does not belong to kind `impact`"),
         (format!("{OUTER}{RIGID}[reduced]\nmodel = \"A\"\n"), "`reduced.model` is \"A\""),
         (format!("{OUTER}{RIGID}[tolerances.A]\nefficiency = 0.1\n"), "`A` is not a reduced model"),
-        (format!("{OUTER}{RIGID}[tolerances.C]\ninner_force_peak = 0.1\n"), "not a quantity that can have"),
-        (format!("{OUTER}[body]\nfile = \"casing.step\"\n"), "`body` is not a key"),
+        (format!("{OUTER}{RIGID}[tolerances.C]\nplate_velocity_rms = 0.1\n"), "not a quantity that can have"),
+        (format!("{OUTER}[body]\nfile = \"casing.step\"\n"), "`body.material` is missing"),
+        (format!("{OUTER}[body]\nfile = \"none.step\"\nmaterial = \"steel\"\n"), "`outer.at` is missing"),
+        (
+            format!("{OUTER}at = \"top\"\n[body]\nfile = \"none.step\"\nmaterial = \"steel\"\n"),
+            "`body.file` is \"none.step\", but \"none.step\" can't be read",
+        ),
+        (format!("{OUTER}at = \"top\"\n{RIGID}"), "`at` is a place on [body]"),
+        (format!("{OUTER}at = [\"1 mm\", \"2 mm\"]\n{RIGID}"), "it must be a name or three coordinates"),
         (format!("{held}{RIGID}"), "`run.end_time` is missing"),
     ] {
         let refused = Scene::parse("test.toml", &text("impact", &tables)).expect_err(said);
@@ -260,7 +267,7 @@ fn scenes_that_contradict_themselves_are_refused_in_a_sentence() {
 #[test]
 fn models_that_need_a_plate_are_refused_by_name() {
     let scene = scene(&format!("{OUTER}{RIGID}"));
-    for (model, modes, said) in [(Model::B, None, "only model C"), (Model::C, Some(4), "has no modes")] {
+    for (model, modes, said) in [(Model::B, None, "has model C only"), (Model::C, Some(4), "has no modes")] {
         let refused = kinds::of(&scene).model(&scene, model, modes).expect_err(said);
         assert!(refused.to_string().contains(said), "{refused}");
     }

@@ -16,12 +16,12 @@ const MESH_POWER: f64 = -3.65;
 
 /// A value at the circle of radius 0, and its slope by the square of the radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Line {
+struct SquareLaw {
     value: f64,
     slope: f64,
 }
 
-impl Line {
+impl SquareLaw {
     /// Through `values` at the circles `radii`, without the error of the mesh.
     fn without_mesh(values: [f64; 3], radii: [f64; 3]) -> Self {
         // in units of the middle circle, so that the columns are of one size
@@ -64,7 +64,7 @@ impl StruckSolid {
         let sides = [1.0, -1.0];
         let at_patch = |values: &[[f64; 3]; 2]| {
             [0, 1].map(|k| match is_struck[k] {
-                true => sides[k] * Line::near(values[k], self.circles[k]).at(patch[k]),
+                true => sides[k] * SquareLaw::near(values[k], self.circles[k]).at(patch[k]),
                 false => 0.0,
             })
         };
@@ -82,15 +82,17 @@ impl StruckSolid {
             let beyond = std::array::from_fn(|m| {
                 body.own[k][m] - half_space_flexibility(material, self.circles[k][m])
             });
-            let line = Line::without_mesh(beyond, self.circles[k]);
+            let line = SquareLaw::without_mesh(beyond, self.circles[k]);
             flexibility.own[k][0] = line.value - of_modes(k, k);
             flexibility.own[k][1] = line.slope * patch[k] * patch[k];
         }
         if is_struck == [true; 2] {
             // the same circle of the one against all of the other, and the other way round
-            let first = Line::near(std::array::from_fn(|m| mean(body.mutual[m])), self.circles[0]);
-            let second =
-                Line::near(std::array::from_fn(|n| mean(body.mutual.map(|row| row[n]))), self.circles[1]);
+            let first = SquareLaw::near(std::array::from_fn(|m| mean(body.mutual[m])), self.circles[0]);
+            let second = SquareLaw::near(
+                std::array::from_fn(|n| mean(body.mutual.map(|row| row[n]))),
+                self.circles[1],
+            );
             let middle = mean(body.mutual.map(mean));
             let value = first.value + second.value - middle;
             flexibility.mutual[0][0] = -value - of_modes(0, 1);
@@ -121,8 +123,12 @@ mod tests {
         let radii = [1.41e-4, 2e-4, 2.83e-4];
         let body = |b: f64| 3e-9 - 0.02 * b * b;
         let values = radii.map(|b| body(b) - 4e-11 * (b / 2e-4).powf(MESH_POWER));
-        let line = Line::without_mesh(values, radii);
+        let line = SquareLaw::without_mesh(values, radii);
         assert_relative_eq!(line.at(5e-5), body(5e-5), max_relative = 1e-11);
-        assert_relative_eq!(Line::near(radii.map(body), radii).at(5e-5), body(5e-5), max_relative = 1e-11);
+        assert_relative_eq!(
+            SquareLaw::near(radii.map(body), radii).at(5e-5),
+            body(5e-5),
+            max_relative = 1e-11
+        );
     }
 }

@@ -72,7 +72,7 @@ impl BodyMesh {
     /// [`Error::Solver`] if it can't be read or is unusable.
     pub fn read(path: &Path) -> Result<Self> {
         let file = MeshFile::read(path)?;
-        let missing = || unusable(path, "does not say which nodes are fixed");
+        let missing = || unusable(path, "has no array `fixed` of its nodes");
         let fixed = file.point_array("fixed").ok_or_else(missing)?.iter().map(|value| *value != 0).collect();
         let mesh = TetMesh::curved(file.points, file.cells).map_err(|what| unusable(path, &what))?;
         Ok(Self { mesh, fixed })

@@ -21,7 +21,7 @@ pub struct SurfacePoint {
 /// A unit force along the normal, spread as 3/(2 pi b^2) sqrt(1 - (r/b)^2) over a circle of the radius b (Johnson, Contact Mechanics, 1985,
 /// section 3.4), in terms of the nodes: forces, and the weights of their displacements along the normal.
 #[derive(Debug, Clone)]
-pub(super) struct Pressed {
+pub(super) struct HertzLoad {
     /// Node and share.
     pub nodes: Vec<(usize, f64)>,
     /// Share of the pressure that lies on the surface, 1 where the circle does not leave it.
@@ -30,13 +30,13 @@ pub(super) struct Pressed {
 
 /// The surface of a mesh around a at.
 #[derive(Debug)]
-pub(super) struct Face {
+pub(super) struct SurfaceAround {
     at: SurfacePoint,
     /// Nodes of the triangles, corners first, and their places.
     triangles: Vec<([usize; 6], [Vector3<f64>; 6])>,
 }
 
-impl Face {
+impl SurfaceAround {
     /// The part of the surface of `mesh`, whose elements are quadratic, that faces as `at` does and is joined to it within `reach` m.
     pub fn around(mesh: &TetMesh, at: SurfacePoint, reach: f64) -> Self {
         let all = mesh.outer_faces().into_iter().filter_map(|face| <[usize; 6]>::try_from(face).ok());
@@ -71,7 +71,7 @@ impl Face {
     }
 
     /// A unit force over the circle of the `radius` in m.
-    pub fn pressed(&self, radius: f64) -> Pressed {
+    pub fn pressed(&self, radius: f64) -> HertzLoad {
         let mut nodes: Vec<(usize, f64)> = Vec::new();
         for (numbers, places) in &self.triangles {
             let edge = [(0, 1), (1, 2), (2, 0)]
@@ -96,7 +96,7 @@ impl Face {
         });
         let coverage: f64 = nodes.iter().map(|(_, share)| share).sum();
         nodes.iter_mut().for_each(|(_, share)| *share /= coverage);
-        Pressed { nodes, coverage }
+        HertzLoad { nodes, coverage }
     }
 
     /// Distance in m of `place` from the at across the normal.
@@ -166,7 +166,7 @@ mod tests {
     fn a_unit_force_has_hertzs_moments() {
         let mesh = boxes([1.0, 1.0, 0.3], [7, 6, 2], 2, |p| p);
         let at = SurfacePoint { point: Vector3::new(0.47, 0.52, 0.3), normal: Vector3::z() };
-        let face = Face::around(&mesh, at, 0.4);
+        let face = SurfaceAround::around(&mesh, at, 0.4);
         for radius in [0.13, 0.25, 0.4] {
             let pressed = face.pressed(radius);
             assert_relative_eq!(pressed.coverage, 1.0, max_relative = 2e-3);
@@ -180,6 +180,10 @@ mod tests {
             assert_relative_eq!(square, 0.4 * radius * radius, max_relative = 3e-3);
         }
         let edge = SurfacePoint { point: Vector3::new(0.0, 0.5, 0.3), normal: Vector3::z() };
-        assert_relative_eq!(Face::around(&mesh, edge, 0.2).pressed(0.2).coverage, 0.5, max_relative = 5e-3);
+        assert_relative_eq!(
+            SurfaceAround::around(&mesh, edge, 0.2).pressed(0.2).coverage,
+            0.5,
+            max_relative = 5e-3
+        );
     }
 }

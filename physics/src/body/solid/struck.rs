@@ -7,7 +7,7 @@
 use super::elasticity::{FIXED, SolidMatrices};
 use super::factor::Factor;
 use super::mesh::TetMesh;
-use super::pressure::{Face, Pressed, SurfacePoint};
+use super::pressure::{HertzLoad, SurfaceAround, SurfacePoint};
 use crate::body::continuum::lanczos::{ShiftInvert, lowest_modes};
 use crate::error::{Error, Result};
 use crate::numerics::eigenmodes::symmetric;
@@ -85,9 +85,9 @@ impl StruckSolid {
     /// [`Error::Solver`] if the body is held so that it can still move, or a circle leaves the face.
     pub fn new(mesh: &TetMesh, poisson_ratio: f64, fixed: &[bool], points: &[StruckPoint]) -> Result<Self> {
         let statics = Statics::new(mesh, poisson_ratio, fixed)?;
-        let mut loads: Vec<[Pressed; 3]> = Vec::new();
+        let mut loads: Vec<[HertzLoad; 3]> = Vec::new();
         for (k, struck) in points.iter().enumerate() {
-            let face = Face::around(mesh, struck.at, struck.circles[2]);
+            let face = SurfaceAround::around(mesh, struck.at, struck.circles[2]);
             let pressed = struck.circles.map(|radius| face.pressed(radius));
             if let Some(bad) = (0..3).find(|m| pressed[*m].coverage < COVERED) {
                 return Err(Error::Solver(format!(
@@ -217,7 +217,7 @@ impl Statics {
     }
 
     /// The force against which a contact presses: along -`normal` over what is `pressed`.
-    pub(super) fn force(&self, pressed: &Pressed, normal: Vector3<f64>) -> Vec<f64> {
+    pub(super) fn force(&self, pressed: &HertzLoad, normal: Vector3<f64>) -> Vec<f64> {
         let mut force = vec![0.0; self.size];
         for (node, share) in &pressed.nodes {
             for (c, &dof) in self.dof[*node].iter().enumerate().filter(|(_, dof)| **dof != FIXED) {
@@ -228,7 +228,7 @@ impl Statics {
     }
 
     /// Displacement along `normal` of what is `pressed`.
-    fn seen(&self, pressed: &Pressed, normal: Vector3<f64>, u: &[f64]) -> f64 {
+    fn seen(&self, pressed: &HertzLoad, normal: Vector3<f64>, u: &[f64]) -> f64 {
         let at = |node: usize| -> f64 {
             let free = self.dof[node].iter().enumerate().filter(|(_, dof)| **dof != FIXED);
             free.map(|(c, &dof)| normal[c] * u[dof]).sum()

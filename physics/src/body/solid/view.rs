@@ -3,7 +3,7 @@
 use super::curved;
 use super::elasticity::FIXED;
 use super::mesh::TetMesh;
-use super::pressure::{Face, SurfacePoint};
+use super::pressure::{SurfaceAround, SurfacePoint};
 use super::struck::{Statics, StruckPoint};
 use crate::error::Result;
 use crate::scene::Material;
@@ -44,7 +44,7 @@ impl BodyView {
         let statics = Statics::new(mesh, material.poisson_ratio, fixed)?;
         let load = |point: &StruckPoint| {
             let SurfacePoint { normal, .. } = point.at;
-            let pressed = Face::around(mesh, point.at, point.circles[2]).pressed(point.circles[1]);
+            let pressed = SurfaceAround::around(mesh, point.at, point.circles[2]).pressed(point.circles[1]);
             let mut u = statics.force(&pressed, -normal);
             statics.solve(&mut u);
             u

@@ -22,7 +22,7 @@ const CONTENT: &str = "content";
 /// A place on the surface of a body.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Place {
+pub enum BodyPlace {
     /// Name of a point, set, group or face in the file.
     Name(String),
     /// Coordinates in m.
@@ -42,18 +42,18 @@ pub struct Body {
     /// Material.
     pub material: Material,
     /// What does not move; nothing = the body is free.
-    pub fixed: Vec<Place>,
+    pub fixed: Vec<BodyPlace>,
     /// Size of elements away from the contacts in m, of CAD; `None` = by the thickness of walls.
     pub element_size: Option<f64>,
     /// Modal damping ratio (Lehr), the same for every mode; 0 = undamped.
     pub damping_ratio: f64,
     /// Where outer and inner body strike; `None` for an inner body that is not there.
-    pub at: [Option<Place>; 2],
+    pub at: [Option<BodyPlace>; 2],
 }
 
 impl Body {
     /// The body that the checked table `body` describes, struck at the places `at`.
-    pub(super) fn read(body: &Node, material: Material, at: [Option<Place>; 2]) -> Result<Self> {
+    pub(super) fn read(body: &Node, material: Material, at: [Option<BodyPlace>; 2]) -> Result<Self> {
         let unit = match body.0.get("unit") {
             Some(Checked::Text(unit)) => {
                 Some(UNITS.iter().find(|(name, _)| name == unit).map_or(1.0, |u| u.1))
@@ -76,7 +76,7 @@ impl Body {
 
     /// What its mesh depends on, with elements `factor` times as large as by default.
     pub fn mesh_request(&self, factor: f64) -> MeshRequest {
-        let contact = |at: &Option<Place>| at.as_ref().map(|at| json!({ "at": at }));
+        let contact = |at: &Option<BodyPlace>| at.as_ref().map(|at| json!({ "at": at }));
         let document = json!({
             "kind": super::NAME,
             "body": {
@@ -130,13 +130,13 @@ pub(super) fn mesh(request: &MeshRequest) -> Result<PathBuf> {
 }
 
 /// The place under `key`, if it is there.
-pub(super) fn place(node: &Node, key: &str) -> Result<Option<Place>> {
+pub(super) fn place(node: &Node, key: &str) -> Result<Option<BodyPlace>> {
     Ok(match node.0.get(key) {
-        Some(Checked::Text(name)) => Some(Place::Name(name.clone())),
+        Some(Checked::Text(name)) => Some(BodyPlace::Name(name.clone())),
         Some(Checked::Numbers(at)) => {
             let at =
                 <[f64; 3]>::try_from(&at[..]).map_err(|_| Error::Internal(format!("`{key}` is no place")))?;
-            Some(Place::Point(at))
+            Some(BodyPlace::Point(at))
         }
         _ => None,
     })

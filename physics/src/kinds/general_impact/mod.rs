@@ -10,7 +10,7 @@ mod results;
 mod scene;
 mod soundness;
 
-pub use body::{Body, MeshRequest, Mesher, Place, set_mesher};
+pub use body::{Body, BodyPlace, MeshRequest, Mesher, set_mesher};
 pub use model::difference_from_hertz;
 pub use results::{CURVES, ImpactQuantities};
 pub use scene::{GeneralImpact, Struck, Wall};
