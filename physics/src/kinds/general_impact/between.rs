@@ -75,7 +75,8 @@ impl Between {
         let between = Self {
             coarse: coarse.map(join),
             alignment: normals.get(1).map_or(0.0, |inner| -normals[0].dot(inner)),
-            free_mass: (!elastic.fine.rigid.is_empty()).then(|| body.material.density * elastic.fine.volume),
+            free_mass: (!elastic.fine.rigid.is_empty())
+                .then_some(body.material.density * elastic.fine.volume),
             fewer: 2 * DROPPED * elastic.contacts.len(),
             warnings,
         };
@@ -129,6 +130,9 @@ mod tests {
         Material::elastic("steel", STEEL[0], STEEL[1], STEEL[2])
     }
 
+    /// Whether a place is held, by its coordinates and the lengths of the block.
+    type Held = fn([f64; 3], [f64; 3]) -> bool;
+
     /// A steel block of the lengths `size` m in `bricks`, graded towards the middle of its upper face, struck there at `at` (x, y; from the
     /// middle) by a compact steel body with a tip of `radius` m, the mass of such a sphere and `speed` m/s; nodes for which `fixed` holds do not move.
     fn struck(
@@ -136,7 +140,7 @@ mod tests {
         bricks: [usize; 3],
         at: [f64; 2],
         [radius, speed]: [f64; 2],
-        (graded, fixed): (bool, fn([f64; 3], [f64; 3]) -> bool),
+        (graded, fixed): (bool, Held),
     ) -> (System, Between, Integration) {
         // finer towards the middle of the face: squares of the distance
         let grade = |x: f64, half: f64| {

@@ -62,7 +62,7 @@ impl Presentation for Direct {
     fn sections(&self, report: &SceneReport) -> Vec<Section> {
         let model = report.comparison.models.first().map(|model| &model.summary);
         vec![
-            Section::new("body", "The body", self.body(&report.scene, model)),
+            Section::new("body", "The body", self.body(report.scene, model)),
             Section::new("impacts", "Impacts in series", section::impacts::impacts_html(report)),
             Section::new("budget", "Error budget", section::budget::budget_html(&report.comparison)),
         ]
