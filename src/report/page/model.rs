@@ -37,6 +37,7 @@ pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
         p.note { "Reduced model without a reference." }
         @if !summary.warnings.is_empty() { ul { @for warning in &summary.warnings { li { (warning) } } } }
         (scrolled("Results", &quantities(scene, summary)))
+        @for line in estimates(summary) { p { (line) } }
         @if !shown.0.is_empty() { h2 { "The body" } (shown) }
         h2 { "Curves" }
         figure { (PreEscaped(curves(&title, history))) }
@@ -46,6 +47,19 @@ pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
         details { summary { "The scene (SI units)" } (facts(&[("", serde_json::to_value(scene).ok().as_ref())])) }
     };
     page(&format!("{title} · impactcheck"), &[], &body, &html! {})
+}
+
+/// Estimated errors and eigenfrequencies, in sentences.
+fn estimates(summary: &Summary) -> Vec<String> {
+    let errors = [("modes left out", summary.truncation_error), ("the mesh", summary.mesh_error)];
+    let error = |(what, error): (&str, Option<f64>)| Some(format!("{what} {:.2} %", 100.0 * error?));
+    let errors: Vec<String> = errors.into_iter().filter_map(error).collect();
+    let frequencies: Vec<String> =
+        summary.frequencies.iter().map(|hertz| with_unit(*hertz, prefixed("Hz", *hertz), 4)).collect();
+    let errors = (!errors.is_empty()).then(|| format!("Estimated error by {}.", errors.join(", by ")));
+    let frequencies =
+        (!frequencies.is_empty()).then(|| format!("Lowest eigenfrequencies: {}.", frequencies.join(", ")));
+    errors.into_iter().chain(frequencies).collect()
 }
 
 fn quantities(scene: &Scene, summary: &Summary) -> Markup {

@@ -113,9 +113,6 @@ impl ContactModel {
             first_frequency: self.system.first_frequency,
         }
         .table();
-        if !table.value("inner_restitution").is_some_and(f64::is_finite) {
-            table.value_mut("inner_restitution").into_iter().for_each(|value| *value = None);
-        }
         let pressed: &[&str] = match result.stop {
             StopReason::Pressed => &["outer_contact_end", "outer_contacts", "outer_impulse"],
             _ => &[],
