@@ -51,7 +51,7 @@ pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
 
 /// Estimated errors and eigenfrequencies, in sentences.
 fn estimates(summary: &Summary) -> Vec<String> {
-    let errors = [("modes left out", summary.truncation_error), ("the mesh", summary.mesh_error)];
+    let errors = [("truncated modes", summary.truncation_error), ("the mesh", summary.mesh_error)];
     let error = |(what, error): (&str, Option<f64>)| Some(format!("{what} {:.2} %", 100.0 * error?));
     let errors: Vec<String> = errors.into_iter().filter_map(error).collect();
     let frequencies: Vec<String> =
