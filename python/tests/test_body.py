@@ -167,6 +167,9 @@ def test_a_mesh_of_somebody_s_own_is_struck_seen_and_swept(block: Path) -> None:
     run(block, "study", "sweep", "sweep.toml", "--out", "swept")
     rows = (block / "swept" / "sweep.csv").read_text().splitlines()
     assert len(rows) == 9 and all(",ok," in row for row in rows[1:])
+    # the optimum lies in another folder and still finds its body
+    run(block, "optimise", name, "--over", "outer.radius=1mm..3mm", "--out", "best")
+    run(block, "reduced", "best/optimum.toml")
     run(block, "-q", "mesh", name, "--out", "part.vtu", "--page", "mesh.html")
     assert (block / "part.json").exists() and (block / "mesh.html").exists()
 

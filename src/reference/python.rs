@@ -30,7 +30,7 @@ enum Purpose {
 impl Purpose {
     /// Whether it needs the module called `name`.
     fn needs(self, name: &str) -> bool {
-        self == Purpose::References || ["python", "gmsh", "meshio"].contains(&name)
+        self == Purpose::References || ["python", "gmsh", "meshio", "numpy", "scipy"].contains(&name)
     }
 
     /// What is needed, and how it is installed.

@@ -28,17 +28,25 @@ fn elliptic(complementary: f64) -> [f64; 2] {
     [first, first * (1.0 - sum)]
 }
 
-/// Radius in m of the sphere that a half-space meets with the same force at the same approach as surfaces with the principal
-/// `curvatures` of their gap (1/m, the sums of those of both bodies); `None` where they are not both positive: the surfaces meet elsewhere
-/// or all over.
-pub fn effective_radius(curvatures: [f64; 2]) -> Option<f64> {
+/// A sphere on a half-space in place of two surfaces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EffectiveSphere {
+    /// Its radius in m: force and approach go together as for the surfaces.
+    pub radius: f64,
+    /// Area of its contact circle over that of the ellipse; the ellipse's pressure is as many times higher.
+    pub area: f64,
+}
+
+/// The sphere that a half-space meets with the same force at the same approach as surfaces with the principal `curvatures` of their gap
+/// (1/m, the sums of those of both bodies); `None` where they are not both positive: the surfaces meet elsewhere or all over.
+pub fn effective_sphere(curvatures: [f64; 2]) -> Option<EffectiveSphere> {
     if !curvatures.iter().all(|curvature| *curvature > 0.0 && curvature.is_finite()) {
         return None;
     }
     let [low, high] = [curvatures[0].min(curvatures[1]), curvatures[0].max(curvatures[1])];
     let mean = 1.0 / (low * high).sqrt();
     if high < low * (1.0 + CIRCULAR) {
-        return Some(mean);
+        return Some(EffectiveSphere { radius: mean, area: 1.0 });
     }
     // eq. 4.25: the ratio of curvatures by that of the axes, b/a
     let excess = |logarithm: f64| {
@@ -55,7 +63,7 @@ pub fn effective_radius(curvatures: [f64; 2]) -> Option<f64> {
         * axes.powf(1.5)
         * (long * (first - second)).sqrt();
     let approach = first / FRAC_PI_2 * axes.sqrt() / cube.cbrt();
-    Some(mean / approach.powi(3))
+    Some(EffectiveSphere { radius: mean / approach.powi(3), area: (cube.cbrt() * approach).powi(-2) })
 }
 
 #[cfg(test)]
@@ -96,15 +104,17 @@ mod tests {
             let force = 2.0 / 3.0 * std::f64::consts::PI * axes[0] * axes[1];
             // F = 4/3 E* R^(1/2) delta^(3/2)
             let expected = (0.75 * force).powi(2) / centre.powi(3);
-            assert_relative_eq!(effective_radius(curvatures).unwrap(), expected, max_relative = 2e-5);
+            let sphere = effective_sphere(curvatures).unwrap();
+            assert_relative_eq!(sphere.radius, expected, max_relative = 2e-5);
+            assert_relative_eq!(sphere.area, expected * centre / (axes[0] * axes[1]), max_relative = 2e-5);
         }
     }
 
     #[test]
     fn a_sphere_in_a_narrower_groove_has_no_contact() {
-        assert_eq!(effective_radius([-10.0, 200.0]), None);
-        assert_eq!(effective_radius([0.0, 200.0]), None);
-        assert_eq!(effective_radius([f64::NAN, 200.0]), None);
-        assert_relative_eq!(effective_radius([200.0, 200.0]).unwrap(), 5e-3, max_relative = 1e-12);
+        assert_eq!(effective_sphere([-10.0, 200.0]), None);
+        assert_eq!(effective_sphere([0.0, 200.0]), None);
+        assert_eq!(effective_sphere([f64::NAN, 200.0]), None);
+        assert_relative_eq!(effective_sphere([200.0, 200.0]).unwrap().radius, 5e-3, max_relative = 1e-12);
     }
 }

@@ -9,7 +9,7 @@ mod residual;
 mod viscoelastic;
 
 pub use dented::DentedContact;
-pub use ellipse::effective_radius;
+pub use ellipse::{EffectiveSphere, effective_sphere};
 pub use hertz::Hertz;
 pub use patch_flexibility::{PatchFlexibility, PatchTable, RADII, TABULATED, Tabulated, WHOLE};
 pub use residual::{Residual, State};

@@ -124,6 +124,11 @@ impl Template {
         let mut table: toml::Table = self.text.parse().map_err(|e: toml::de::Error| failed(e.to_string()))?;
         table.insert("name".into(), name.into());
         self.take_in_record(&mut table);
+        if let Some(Checked::Table(body)) = self.values.get("body")
+            && let Some(Checked::Text(file)) = body.get("file")
+        {
+            write(&mut table, &["body".into(), "file".into()], file.clone().into());
+        }
         for (field, value) in numbers {
             let number = if field.is_count() { (*value as i64).into() } else { (*value).into() };
             write(&mut table, &field.keys, number);

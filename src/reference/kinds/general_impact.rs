@@ -3,7 +3,7 @@
 use super::{Refused, mesh_with, run};
 use crate::body::cache::Cache;
 use crate::interrupt::Scratch;
-use crate::kinds::general_impact::{GeneralImpact, MeshRequest, set_mesher};
+use crate::kinds::general_impact::{self, GeneralImpact, MeshRequest, set_mesher};
 use crate::reference::python;
 use crate::scene::hash::sha256_hex;
 use crate::{Error, Result};
@@ -15,6 +15,9 @@ use std::path::{Path, PathBuf};
 pub fn mesh_bodies() {
     set_mesher(body_mesh);
 }
+
+/// Factors on the sizes of elements that the mesher takes.
+const SIZE_FACTORS: std::ops::RangeInclusive<f64> = 0.25..=10.0;
 
 /// What a mesh's description says of its file.
 #[derive(Deserialize)]
@@ -44,6 +47,13 @@ pub fn body_mesh(request: &MeshRequest) -> Result<PathBuf> {
     if !is_intact(&made) {
         return Err(Error::Solver("the mesher wrote no mesh with its description".into()));
     }
+    let (file, content) = &request.file;
+    if general_impact::content(file).ok().as_ref() != Some(content) {
+        return Err(Error::Scene(miette::miette!(
+            "`body.file` changed while {} was meshed: run again",
+            file.display()
+        )));
+    }
     for extension in ["json", "vtu"] {
         std::fs::rename(made.with_extension(extension), path.with_extension(extension)).map_err(writing)?;
     }
@@ -55,6 +65,12 @@ pub(super) fn make_body_mesh(setup: &GeneralImpact, size_factor: f64, out: &Path
     let body = setup.body().ok_or_else(|| {
         Error::Usage("the scene has no [body]: a mesh is made of a body from a file alone".into())
     })?;
+    if !SIZE_FACTORS.contains(&size_factor) {
+        let [least, most] = [SIZE_FACTORS.start(), SIZE_FACTORS.end()];
+        return Err(Error::Usage(format!(
+            "--size-factor {size_factor} of a body has to lie between {least} and {most}"
+        )));
+    }
     let request = body.mesh_request(size_factor);
     mesh_with(&python::mesher()?, &request.document, &[], size_factor, out).map_err(refused)?;
     let text =

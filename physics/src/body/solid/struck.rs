@@ -30,6 +30,8 @@ const DEPENDENT: f64 = 1e-9;
 /// Least share of the pressure that lies on the surface, and largest one that lies on held nodes.
 const COVERED: f64 = 0.99;
 const HELD: f64 = 0.01;
+/// Least eigenvalue over the largest of the products of independent rigid motions on what is held.
+const INDEPENDENT: f64 = 1e-8;
 
 /// Where a body is struck, and how large the mesh's elements are there.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,11 +100,12 @@ impl StruckSolid {
                     100.0 * pressed[bad].coverage
                 )));
             }
-            let held: f64 =
-                pressed[0].nodes.iter().filter(|(node, _)| fixed[*node]).map(|(_, share)| share.abs()).sum();
-            if held > HELD {
+            let on_held = |load: &HertzLoad| -> f64 {
+                load.nodes.iter().filter(|(node, _)| fixed[*node]).map(|(_, share)| share.abs()).sum()
+            };
+            if pressed.iter().map(on_held).fold(0.0, f64::max) > HELD {
                 return Err(Error::Solver(format!(
-                    "{} contact: it lies on a part of the body that is held, so that the body does not move there; \
+                    "{} contact: it lies on a part of the body that is held, or within three elements of one; \
                      strike another place, or take that face out of `body.fixed`",
                     ["outer", "inner"][k]
                 )));
@@ -198,6 +201,11 @@ impl Statics {
         let stiffness = matrices.free_stiffness(&dof, size);
         let is_free = !fixed.contains(&true);
         let motions = if is_free { rigid_motions(mesh) } else { Vec::new() };
+        if !is_free && !holds(mesh, fixed) {
+            return Err(Error::Solver(
+                "the supports of the body lie on one point or one line, about which it can turn: hold a face, or nothing".into(),
+            ));
+        }
         let propped = props(&motions);
         let factor = match propped.is_empty() {
             true => Factor::new(&stiffness, &[])?,
@@ -352,6 +360,20 @@ fn rigid_motions(mesh: &TetMesh) -> Vec<Vec<f64>> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let shifts = axes.iter().map(|axis| of(&|_| *axis));
     shifts.chain(axes.iter().map(|axis| of(&|p| axis.cross(&p)))).collect()
+}
+
+/// Whether a body cannot move whose nodes `fixed` do not: its rigid motions, rotations in terms of its size, are independent on them.
+fn holds(mesh: &TetMesh, fixed: &[bool]) -> bool {
+    let motions = rigid_motions(mesh);
+    let size =
+        motions[3..].iter().flatten().fold(f64::MIN_POSITIVE, |most: f64, value| most.max(value.abs()));
+    let on_fixed = |i: usize, j: usize| -> f64 {
+        let scale = |k: usize| if k < 3 { 1.0 } else { 1.0 / size };
+        let of_node = |n: usize| (0..3).map(|c| motions[i][3 * n + c] * motions[j][3 * n + c]).sum::<f64>();
+        scale(i) * scale(j) * (0..fixed.len()).filter(|n| fixed[*n]).map(of_node).sum::<f64>()
+    };
+    let squares = symmetric(&Mat::from_fn(6, 6, on_fixed)).map(|(squares, _)| squares);
+    squares.is_some_and(|squares| squares[0] > INDEPENDENT * squares[5])
 }
 
 /// Six displacements that hold a body of these rigid `motions` without straining it: those that the motions move most, one after the other.

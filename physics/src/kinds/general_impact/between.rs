@@ -14,6 +14,13 @@ use crate::error::Result;
 use crate::scene::{DEFAULT_MODES, Edge, Inner, Material, Outer, Plate, Shape};
 use nalgebra::Vector3;
 
+/// Area of the circle over that of an ellipse from which on there is a warning.
+const ELLIPTIC: f64 = 1.05;
+/// Deflection of a plate over its thickness, and patch over thickness, up to which models were compared.
+const SMALL_DEFLECTION: f64 = 0.3;
+const MEASURED_PATCH: f64 = 1.05;
+/// Share of the patch that contacts have to be able to exceed before they become punches.
+const REACH: f64 = 1.2;
 /// Blocks of Ritz vectors that are left out to see what modes change.
 const DROPPED: usize = 1;
 /// Smallest patch over the thickness of a plate that its mesh is made for.
@@ -45,17 +52,23 @@ impl Between {
         given: &Outer,
         inner: Option<&Inner>,
     ) -> Result<(System, Self)> {
-        let outer = MovingBody { tip_radius: elastic.tip_radius(0, outer.tip_radius)?, ..outer };
+        let outer = MovingBody { tip_radius: elastic.sphere(0, outer.tip_radius)?.radius, ..outer };
         let moving = inner.map(|inner| {
             let moving = MovingBody::inner(inner);
-            Ok(MovingBody { tip_radius: elastic.tip_radius(1, moving.tip_radius)?, ..moving })
+            Ok(MovingBody { tip_radius: elastic.sphere(1, moving.tip_radius)?.radius, ..moving })
         });
         let moving = moving.transpose()?;
         // contact patches under the force of the outer body on a half-space
         let law = |moving: &MovingBody| Hertz::new(moving.tip_radius, &moving.material, &body.material);
         let hit = HertzImpact { mass: outer.mass, speed: outer.speed, stiffness: law(&outer).stiffness };
+        // or that of the inner one, if that is the heavier blow
+        let own = moving.as_ref().map_or(0.0, |inner| {
+            let speed = inner.speed.max(0.0);
+            HertzImpact { mass: inner.mass, speed, stiffness: law(inner).stiffness }.force_peak()
+        });
+        let force = hit.force_peak().max(own);
         let patch = [Some(&outer), moving.as_ref()]
-            .map(|moving| moving.map_or(1.0, |moving| law(moving).contact_radius(hit.force_peak())));
+            .map(|moving| moving.map_or(1.0, |moving| law(moving).contact_radius(force)));
         let tip = |shape: &Shape, material: &Material, patch: f64| {
             sphere_radius(shape).map_or(0.0, |radius| sphere_residual(radius, material, patch))
         };
@@ -72,6 +85,19 @@ impl Between {
         let normals: Vec<Vector3<f64>> = elastic.contacts.iter().map(|c| Vector3::from(c.normal)).collect();
         let mut warnings = elastic.warnings.clone();
         warnings.extend(elastic.patch_warnings(patch));
+        warnings.extend(punches(&system, patch));
+        let tips = [Some(given.shape.tip_radius()), inner.map(|inner| inner.shape.tip_radius())];
+        let yields = body.material.yield_strength.is_some();
+        for (k, tip) in tips.into_iter().enumerate().filter_map(|(k, tip)| Some((k, tip?))) {
+            let area = elastic.sphere(k, tip)?.area;
+            if yields && area > ELLIPTIC {
+                warnings.push(format!(
+                    "{} contact: it is an ellipse, whose pressure is {:.0} % higher than that of the circle that the law of plastic contacts and the elastic speed assume",
+                    ["outer", "inner"][k],
+                    100.0 * (area - 1.0)
+                ));
+            }
+        }
         let between = Self {
             coarse: coarse.map(join),
             alignment: normals.get(1).map_or(0.0, |inner| -normals[0].dot(inner)),
@@ -97,12 +123,27 @@ impl Between {
             sphere_radius(&given.shape).map_or(0.0, |radius| sphere_residual(radius, &given.material, patch));
         let slow = std::f64::consts::PI / hit.duration();
         let system = System::on_body(outer, &body.modal_body(DEFAULT_MODES, slow), &plate.material, tip);
+        let mut warnings = punches(&system, [patch; 2]);
+        let yielding: f64 =
+            system.elastic().map(|k| (system.approach[0][k] / system.oscillators[k].omega).powi(2)).sum();
+        let deflection = (2.0 * system.initial_energy() * yielding).sqrt() / plate.thickness;
+        if deflection > SMALL_DEFLECTION {
+            warnings.push(format!(
+                "the plate may deflect by up to {deflection:.2} of its thickness, as its energy allows: linear plate theory omits above {SMALL_DEFLECTION} that the plate stretches"
+            ));
+        }
+        let ratio = patch / plate.thickness;
+        if ratio > MEASURED_PATCH {
+            warnings.push(format!(
+                "the contact patch is {ratio:.2} times as wide as the plate is thick; force peaks were compared with finite elements up to {MEASURED_PATCH}"
+            ));
+        }
         let between = Self {
             coarse: None,
             alignment: 0.0,
             fewer: system.modes / 2,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
-            warnings: Vec::new(),
+            warnings,
         };
         Ok((system, between))
     }
@@ -113,6 +154,21 @@ impl Between {
         let Some(mass) = self.free_mass else { return [0.0; 2] };
         [(inner * self.alignment - outer) / mass, (inner - outer * self.alignment) / mass]
     }
+}
+
+/// A sentence for each contact that becomes a flat punch before its radius is that of the `patch` in m.
+fn punches(system: &System, patch: [f64; 2]) -> Vec<String> {
+    let reach = system.residual.map_or([f64::INFINITY; 2], |residual| residual.reach(&system.laws));
+    let near = |k: &usize| system.can_close(*k) && reach[*k] < REACH * patch[*k];
+    let punch = |k: usize| {
+        format!(
+            "{} contact: above a radius of {:.3} mm (about {:.3} mm is expected) it is treated as a flat punch",
+            ["outer", "inner"][k],
+            1e3 * reach[k],
+            1e3 * patch[k]
+        )
+    };
+    (0..2).filter(near).map(punch).collect()
 }
 
 #[cfg(test)]
@@ -298,9 +354,18 @@ mod tests {
     #[test]
     fn a_body_that_can_still_turn_is_refused() {
         let mesh = boxes([1.0, 1.0, 1.0], [2, 2, 2], 2, |p| p);
-        let mut fixed = vec![false; mesh.points.len()];
-        fixed[0] = true;
-        assert!(StruckSolid::new(&mesh, 0.3, &fixed, &[]).is_err());
+        for held in [
+            |p: &Vector3<f64>| p.norm() == 0.0,
+            // an edge, about which it turns, straight or along a diagonal
+            |p: &Vector3<f64>| p.x == 0.0 && p.z == 0.0,
+            |p: &Vector3<f64>| p.z == 0.0 && p.x == p.y,
+        ] {
+            let fixed: Vec<bool> = mesh.points.iter().map(held).collect();
+            let refused = StruckSolid::new(&mesh, 0.3, &fixed, &[]).expect_err("it can turn").to_string();
+            assert!(refused.contains("it can turn"), "{refused}");
+        }
+        let fixed: Vec<bool> = mesh.points.iter().map(|p| p.z == 0.0).collect();
+        assert!(StruckSolid::new(&mesh, 0.3, &fixed, &[]).is_ok());
     }
 
     /// A contact on what is held, and one whose circle leaves the face.

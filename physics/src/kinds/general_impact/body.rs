@@ -89,7 +89,7 @@ impl Body {
         let key = sha256_hex(canonical(&key).as_bytes());
         let mut document = document;
         document["body"]["path"] = json!(self.file);
-        MeshRequest { document, factor, key }
+        MeshRequest { document, factor, key, file: (self.file.clone(), self.content.clone()) }
     }
 }
 
@@ -106,6 +106,8 @@ pub struct MeshRequest {
     pub factor: f64,
     /// SHA-256 of all that the mesh depends on.
     pub key: String,
+    /// The file, and the SHA-256 of its content when the scene was read.
+    pub file: (PathBuf, String),
 }
 
 /// Makes a mesh, or finds the one that is there: a `.vtu` file with its description in the `.json` file of the same name.
@@ -157,8 +159,11 @@ pub(super) fn find_file(values: &mut Values, source_name: &str) -> std::result::
     Ok(())
 }
 
-/// SHA-256 of a file.
-fn content(path: &Path) -> std::result::Result<String, String> {
+/// SHA-256 (hexadecimal) of a file.
+///
+/// # Errors
+/// A clause that says why it can't be read.
+pub fn content(path: &Path) -> std::result::Result<String, String> {
     let refused = |error: std::io::Error| format!("but \"{}\" can't be read: {error}", path.display());
     // before it is opened, for which a pipe would wait
     let metadata = std::fs::metadata(path).map_err(refused)?;

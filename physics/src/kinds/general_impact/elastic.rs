@@ -5,7 +5,7 @@ use crate::body::ModalBody;
 use crate::body::cache::Cache;
 use crate::body::memo::MemoList;
 use crate::body::solid::{self, BodyMesh, BodyView, ContactInfo, StruckPoint, StruckSolid};
-use crate::contact::effective_radius;
+use crate::contact::{EffectiveSphere, effective_sphere};
 use crate::error::{Error, Result};
 use crate::scene::hash::sha256_hex;
 use serde_json::json;
@@ -16,6 +16,8 @@ use std::sync::LazyLock;
 const REVISION: u32 = 1;
 /// Elements of the coarser mesh over those of the mesh itself.
 const COARSER: f64 = 2.0;
+/// Endings of files that know their unit.
+const CAD: [&str; 5] = ["step", "stp", "brep", "iges", "igs"];
 /// Layers of elements through the wall below which frequencies are some tenths of a per cent too high.
 const LAYERS: f64 = 2.0;
 /// Contact patches that an edge has to be away, at least.
@@ -54,11 +56,22 @@ impl ElasticBody {
         Ok(found.2.clone())
     }
 
+    /// The same if this process has reduced it.
+    pub(super) fn known(body: &Body) -> Option<Self> {
+        let (key, ratio) = (body.mesh_request(1.0).key, body.material.poisson_ratio);
+        let all = REDUCED.all();
+        all.iter().find(|entry| entry.0 == key && entry.1 == ratio).map(|entry| entry.2.clone())
+    }
+
     fn build(body: &Body) -> Result<Self> {
         let path = mesh(&body.mesh_request(1.0))?;
         let contacts = BodyMesh::contacts(&path)?;
         let fine = reduced(body, &path, &contacts)?;
         let mut warnings = Vec::new();
+        let is_cad = body.file.extension().is_some_and(|e| CAD.iter().any(|cad| e.eq_ignore_ascii_case(cad)));
+        if body.unit.is_none() && !is_cad {
+            warnings.push("`body.unit` is not stated: the numbers of the mesh file are taken as m".into());
+        }
         let coarse = mesh(&body.mesh_request(COARSER))
             .and_then(|path| reduced(body, &path, &BodyMesh::contacts(&path)?))
             .map_err(|why| {
@@ -91,13 +104,13 @@ impl ElasticBody {
         Ok(Self { fine, coarse, contacts, warnings })
     }
 
-    /// Effective tip radius in m of a body with the tip radius `tip` at contact `k`.
+    /// The sphere that stands for a body with the tip radius `tip` in m at contact `k`.
     ///
     /// # Errors
     /// [`Error::Solver`] if the tip does not fit into the surface.
-    pub(super) fn tip_radius(&self, k: usize, tip: f64) -> Result<f64> {
+    pub(super) fn sphere(&self, k: usize, tip: f64) -> Result<EffectiveSphere> {
         let curvatures = self.contacts[k].curvatures;
-        effective_radius(curvatures.map(|own| own + 1.0 / tip)).ok_or_else(|| {
+        effective_sphere(curvatures.map(|own| own + 1.0 / tip)).ok_or_else(|| {
             let narrow = curvatures[0].min(curvatures[1]);
             Error::Solver(format!(
                 "{} contact: the surface is hollow with a radius of {:.4} mm, in which a tip of {:.4} mm does not fit; \

@@ -10,18 +10,20 @@ mod results;
 mod scene;
 mod soundness;
 
-pub use body::{Body, BodyPlace, MeshRequest, Mesher, set_mesher};
+pub use body::{Body, BodyPlace, MeshRequest, Mesher, content, set_mesher};
 pub use model::difference_from_hertz;
 pub use results::{CURVES, ImpactQuantities};
 pub use scene::{GeneralImpact, Struck, Wall};
 
 use super::SeriesModel;
 use crate::body::solid::{BodyView, ContactInfo};
-use crate::contact::Hertz;
+use crate::contact::{EffectiveSphere, Hertz};
 use crate::error::{Error, Result};
+use crate::material::Material;
 use crate::result::limit::{self, QUASI_STATIC, SMALL_ROTATION};
 use crate::result::{Curve, History, Limit, Outcome, Quantity, Statement, Summary, Table};
 use crate::scene::{Model, Scene, Shape};
+use elastic::ElasticBody;
 use model::ContactModel;
 
 /// Its name in scene files.
@@ -92,16 +94,35 @@ pub fn body_view(scene: &Scene) -> Result<Option<(BodyView, Vec<ContactInfo>)>> 
     scene.general_impact().ok().and_then(GeneralImpact::body).map(elastic::view).transpose()
 }
 
+/// The elastic contacts: whose, their laws, with the area of an ellipse where there is one, and the materials that meet.
+fn contact_laws(setup: &GeneralImpact) -> Vec<(&'static str, Hertz, Vec<&Material>)> {
+    let elastic = setup.body().and_then(ElasticBody::known);
+    let law = |k: usize, tip: f64, material: &Material| {
+        let sphere = elastic.as_ref().and_then(|body| body.sphere(k, tip).ok());
+        let sphere = sphere.unwrap_or(EffectiveSphere { radius: tip, area: 1.0 });
+        let law = Hertz::new(sphere.radius, material, &setup.face());
+        Hertz { tip_radius: law.tip_radius / sphere.area, ..law }
+    };
+    let curvature = setup.struck_inner().map_or(0.0, |inner| 1.0 / inner.shape.tip_radius());
+    let outer = 1.0 / (1.0 / setup.outer.shape.tip_radius() + curvature);
+    let mut found = vec![("outer", law(0, outer, &setup.outer.material), setup.materials())];
+    if let (Some(inner), Some(body)) = (&setup.inner, setup.body()) {
+        let own = law(1, inner.shape.tip_radius(), &inner.material);
+        found.push(("inner", own, vec![&inner.material, &body.material]));
+        found[0].2 = vec![&setup.outer.material, &body.material];
+    }
+    found
+}
+
 /// How near a result comes to the bounds of the theories behind it.
 fn limits(setup: &GeneralImpact, summary: &Summary) -> Vec<Limit> {
     let materials = setup.materials();
-    let outer = setup.outer.shape.tip_radius();
-    let curvature = 1.0 / outer + setup.struck_inner().map_or(0.0, |inner| 1.0 / inner.shape.tip_radius());
-    let law = Hertz::new(1.0 / curvature, &setup.outer.material, &setup.face());
     let is_elastic = materials.iter().all(|material| material.is_elastic());
-    let force = summary.value("outer_force_peak").filter(|_| is_elastic);
-    let mut limits: Vec<Limit> =
-        force.into_iter().flat_map(|force| limit::of_contact("outer", &law, force, &materials)).collect();
+    let mut limits = Vec::new();
+    for (name, law, pair) in contact_laws(setup) {
+        let force = summary.value(&format!("{name}_force_peak")).filter(|_| is_elastic);
+        limits.extend(force.into_iter().flat_map(|force| limit::of_contact(name, &law, force, &pair)));
+    }
     if let (Shape::Bender(beam), Some(bender)) = (&setup.outer.shape, summary.bender) {
         limits.push(SMALL_ROTATION.at("outer", bender.drive.tip_deflection.abs() / beam.length));
     }

@@ -173,28 +173,34 @@ impl ContactModel {
 
     /// Relative change of the force peak by the flexibility of spheres beyond that of Hertz's half-spaces, which the model omits where there is no
     /// elastic body; with one, that by fewer of its modes.
-    fn truncation(&self) -> f64 {
+    fn truncation(&self) -> Option<f64> {
         match &self.between {
             Some(between) => {
                 let fewer = self.system.lowest(self.system.modes.saturating_sub(between.fewer));
                 self.change(&self.system, &fewer)
             }
-            None => self.omitted_flexibility(),
+            None => Some(self.omitted_flexibility()),
         }
     }
 
-    /// Largest relative difference of efficiency and force peaks between two systems of the scene; infinite where one has none.
-    fn change(&self, own: &System, other: &System) -> f64 {
-        let run = |system: &System| integrate(system, None, &self.options(LOW_ACCURACY)).ok();
-        let Some((own, other)) = run(own).zip(run(other)) else { return f64::INFINITY };
-        let [own, other] = [self.table(&own), self.table(&other)];
-        let relative = |name: &str| {
-            let (own, other) = (own.value(name)?, other.value(name)?);
-            (own != 0.0).then(|| (other / own - 1.0).abs())
+    /// Largest difference between two systems of the scene of efficiency (without an inner body: restitution, absolute) and force peaks,
+    /// relative; `None` if one of them has no result, or one in contact.
+    fn change(&self, own: &System, other: &System) -> Option<f64> {
+        let run = |system: &System| {
+            let result = integrate(system, None, &self.options(LOW_ACCURACY)).ok()?;
+            (result.stop != StopReason::Cut).then(|| self.table(&result))
         };
-        COMPARED.iter().filter_map(|name| relative(name)).fold(0.0, f64::max)
+        let (own, other) = (run(own)?, run(other)?);
+        let both = |name: &str| own.value(name).zip(other.value(name));
+        let relative = |name: &&str| {
+            both(name).filter(|(own, _)| *own != 0.0).map(|(own, other)| (other / own - 1.0).abs())
+        };
+        let rebound = both("outer_restitution").filter(|_| self.setup.inner.is_none());
+        let rebound = rebound.map(|(own, other)| (other - own).abs());
+        COMPARED.iter().filter_map(relative).chain(rebound).max_by(f64::total_cmp)
     }
 
+    /// Relative change of the force peak by the flexibility of spheres beyond that of Hertz's half-spaces, which the model omits.
     fn omitted_flexibility(&self) -> f64 {
         let hit = self.system.hertz_impact();
         let patch = (self.system.laws[0].tip_radius * hit.approach_peak()).sqrt();
@@ -221,9 +227,11 @@ impl ContactModel {
             None => "the model omits how spheres deform beyond their contact, which changes the peak force",
             Some(_) => "the model omits higher modes of the body, which change forces or efficiency",
         };
-        warnings.extend((omitted > NOTABLE).then(|| format!("{what} by about {:.1} %", 100.0 * omitted)));
+        let notable = omitted.filter(|error| *error > NOTABLE);
+        warnings.extend(notable.map(|error| format!("{what} by about {:.1} %", 100.0 * error)));
         let mesh_error = self.between.as_ref().and_then(|between| {
-            between.coarse.as_ref().map(|coarse| OF_COARSER * self.change(&self.system, coarse))
+            let coarse = between.coarse.as_ref()?;
+            Some(OF_COARSER * self.change(&self.system, &coarse.lowest(self.system.modes))?)
         });
         warnings.extend(mesh_error.filter(|error| *error > NOTABLE).map(|error| {
             format!("the body's mesh changes forces or efficiency by about {:.1} %: refine it", 100.0 * error)
@@ -262,7 +270,7 @@ impl ContactModel {
             momentum_residual: Some(result.momentum_residual),
             steps: Some(result.steps),
             integration_error: result.error_estimate,
-            truncation_error: Some(omitted),
+            truncation_error: omitted,
             mesh_error,
             bender: system.drive.map(|drive| BenderSummary {
                 strain_energy_efficiency: transmitted.map(|energy| energy / drive.strain_energy),

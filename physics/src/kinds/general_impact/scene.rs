@@ -127,7 +127,7 @@ impl GeneralImpact {
             "outer_restitution" => !outer.is_mounted(),
             "first_frequency" => self.is_held().is_some(),
             "inner_restitution" => {
-                self.body().is_some() && self.inner.as_ref().is_some_and(|inner| inner.speed != 0.0)
+                self.body().is_some() && self.inner.as_ref().is_some_and(|inner| inner.speed > 0.0)
             }
             "inner_displacement" | "inner_velocity" | "inner_velocity_final" => self.inner.is_some(),
             _ => !name.starts_with("inner") || (self.inner.is_some() && self.body().is_some()),

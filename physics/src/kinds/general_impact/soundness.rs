@@ -78,8 +78,8 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
         },
         Rule {
             fields: vec!["outer.kind"],
-            holds: !is_mounted || wall.is_none() || ends,
-            message: "`run.end_time` is missing: a bender or stack is clamped and strikes a wall repeatedly"
+            holds: !is_mounted || has("inner") || ends,
+            message: "`run.end_time` is missing: a bender or stack is clamped and strikes repeatedly what does not fly away"
                 .into(),
             help: "add [run] with `end_time`, the time in which its strikes count",
         },
