@@ -210,13 +210,19 @@ fn write(context: &Context, folder: &Path, problem: &Problem, document: &Optimum
 /// The best in words.
 fn reached(optimum: &Optimum) -> String {
     let Optimum { efficiency, objective, objective_unit, objective_value, summary, .. } = optimum;
-    if *objective == "efficiency" {
-        return format!("efficiency {efficiency:.5}");
+    let efficiency = efficiency.map(|efficiency| format!("efficiency {efficiency:.5}"));
+    if let (Some(efficiency), "efficiency") = (&efficiency, *objective) {
+        return efficiency.clone();
     }
+    let efficiency = efficiency.map(|efficiency| format!(", {efficiency}"));
     let unit = if *objective_unit == "1" { String::new() } else { format!(" {objective_unit}") };
     let angle = summary.value("sphere_angle").map(|angle| format!(", direction {:.2}°", angle.to_degrees()));
     let name = words(objective).to_lowercase();
-    format!("{name} {objective_value:.5}{unit}{}, efficiency {efficiency:.5}", angle.unwrap_or_default())
+    format!(
+        "{name} {objective_value:.5}{unit}{}{}",
+        angle.unwrap_or_default(),
+        efficiency.unwrap_or_default()
+    )
 }
 
 fn table(document: &OptimumDocument) -> String {
@@ -274,7 +280,7 @@ fn table(document: &OptimumDocument) -> String {
 /// What model C says of the optimum, in a sentence.
 fn confirmed(optimum: &Optimum, confirmation: &Confirmation) -> String {
     let there = confirmation.efficiency;
-    let off = 100.0 * (there / optimum.efficiency - 1.0);
+    let off = 100.0 * (there / optimum.efficiency.unwrap_or(f64::NAN) - 1.0);
     let own = format!("  model C there: efficiency {there:.5} ({off:+.1} %)");
     match &confirmation.rival {
         Some(rival) if !confirmation.confirmed => {

@@ -42,16 +42,17 @@ pub struct Rival {
 /// # Errors
 /// If model C has no result at the optimum.
 pub fn confirm(problem: &Problem, optimum: &Optimum) -> Result<Option<Confirmation>> {
-    if problem.model == Model::C || problem.robust.is_some() {
+    let Some(best) = optimum.efficiency.filter(|_| problem.model != Model::C && problem.robust.is_none())
+    else {
         return Ok(None);
-    }
+    };
     let values = optimum.values();
     let efficiency = problem.efficiency_of(Model::C, &values)?;
     let candidates: Vec<(usize, [f64; 2])> = optimum
         .variables
         .iter()
         .enumerate()
-        .flat_map(|(k, variable)| rivals(variable, optimum.efficiency).into_iter().map(move |at| (k, at)))
+        .flat_map(|(k, variable)| rivals(variable, best).into_iter().map(move |at| (k, at)))
         .collect();
     let by_c = |(k, [value, searched]): (usize, [f64; 2])| {
         let mut there = values.clone();

@@ -134,8 +134,8 @@ pub struct Optimum {
     pub scene: String,
     /// Name of the reduced model.
     pub model: String,
-    /// Efficiency at the optimum.
-    pub efficiency: f64,
+    /// Efficiency at the optimum; `None` without an inner body.
+    pub efficiency: Option<f64>,
     /// What was maximised.
     pub objective: &'static str,
     /// Its SI unit.
@@ -302,7 +302,7 @@ impl Problem {
             .collect();
         let summary = self.model(&values)?.run(self.tolerance())?;
         let cut = || Error::Solver(CUT.into());
-        let efficiency = summary.value("efficiency").ok_or_else(cut)?;
+        let efficiency = summary.value("efficiency");
         let nominal =
             self.objective.value(&self.scene(&values)?, |name| summary.value(name)).ok_or_else(cut)?;
         let robust = match &self.robust {
