@@ -121,7 +121,9 @@ fn copy(from: &Path, to: &Path) {
 /// A reader's folder is a checkout: what is there has the same places; the shipped solutions are in a store of its own.
 fn folder() -> tempfile::TempDir {
     let (folder, project) = (tempfile::tempdir().unwrap(), Path::new(ROOT));
-    for part in ["scenes/examples", "examples/external", "examples/import", "examples/uncertainty"] {
+    for part in
+        ["scenes/examples", "examples/external", "examples/import", "examples/uncertainty", "examples/bodies"]
+    {
         copy(&project.join(part), &folder.path().join(part));
     }
     copy(&project.join("fem_reference/solutions"), &folder.path().join("store"));
