@@ -15,7 +15,7 @@ FIRST_RADIUS = 2.0
 """Distance of the nodes that a surface is fitted to, over the size of the elements there."""
 LAST_RADIUS = 8.0
 ENOUGH_FOR = {4: 30, 2: 9}
-"""Nodes that a polynomial of a degree takes: twice its coefficients, or half as many again."""
+"""Nodes that a polynomial of a degree takes: twice its coefficients, or half as many more."""
 ASIDE = 1e-5
 """Step away from a pole, over the range of the parameters."""
 DEGENERATE = 1e-6

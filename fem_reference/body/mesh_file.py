@@ -158,7 +158,7 @@ def _elements_of(body: Body, name: str) -> Ints:
 
 
 def write_body_mesh(path: Path, scene: BodyScene, factor: float) -> None:
-    """Mesh a scene's body; write it as an uncompressed .vtu, then what it is as .json beside it.
+    """Mesh a scene's body; write it as an uncompressed .vtu, then its description as .json.
 
     Raises:
         SceneError: the file, the scene or the size factor is not sound.

@@ -131,7 +131,7 @@ def requested_sizes(found: Walls, largest: float | None) -> Floats:
 
 
 def wall_at(found: Walls, place: Floats, along_normal: float) -> float:
-    """The wall that decides at a contact: the one along its normal, or one beside it.
+    """The wall that decides at a contact: the one along its normal, or a neighbouring one.
 
     A rod that is struck at its end is as thick as its diameter, not as long as it is.
     """

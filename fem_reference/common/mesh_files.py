@@ -1,4 +1,4 @@
-"""A mesh and its description beside it: what they may replace."""
+"""A mesh and its description: what they may replace."""
 
 from __future__ import annotations
 

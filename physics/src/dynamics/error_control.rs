@@ -46,7 +46,7 @@ const RELEASED: f64 = 3e-4;
 /// Sensitivity of a time of release from which on bodies part slowly, see [`ContactBalance::end_sensitivity`]; of a half-sine it is 1/pi.
 const SLOW_SEPARATION: f64 = 5.0;
 /// The same up to which they part so quickly that a vibration on the contact decides when: steps of the first solution do not follow it,
-/// although forces and impulses are right. Of 795 random impacts with few contacts and steps the times of release were then off by up to
+/// although forces and impulses are right. Of 795 random impacts with few contacts and steps the times of release then differed by up to
 /// 3.8e-4, of the others by 1.4e-5.
 const QUICK_SEPARATION: f64 = 0.1;
 

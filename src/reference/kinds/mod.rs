@@ -32,7 +32,7 @@ pub fn make_mesh(scene: &Scene, resolution: Resolution, size_factor: f64, out: &
     }
 }
 
-/// The whole path of the mesh file `out`, unless a file lies there or beside it that is no mesh of this program.
+/// The whole path of the mesh file `out`, unless a file there, or its description, is no mesh of this program.
 fn replaceable(out: &Path) -> Result<PathBuf> {
     if out.extension().is_none_or(|e| e != "vtu") {
         return Err(Error::Usage(format!("{} has to end in .vtu", out.display())));
@@ -65,7 +65,7 @@ impl From<String> for Refused {
     }
 }
 
-/// Has `fem_reference` write the mesh of `document` to `out` and its description beside it.
+/// Has `fem_reference` write the mesh of `document` to `out` and its description.
 fn mesh_with(
     python: &Path,
     document: &Value,

@@ -269,7 +269,7 @@ mod tests {
         assert_relative_eq!(mass * result.velocity[0] + block * moved, -mass * 0.1, max_relative = 1e-6);
     }
 
-    /// The block is struck beside its middle: it turns, and what it gets at the contact is that of the rigid body with its moments of
+    /// The block is struck off its middle: it turns, and what it gets at the contact is that of the rigid body with its moments of
     /// inertia, 1/M_eff = 1/M + d^2/J.
     #[test]
     fn a_free_block_that_is_struck_beside_its_middle_turns() {
