@@ -148,7 +148,7 @@ def test_a_contact_in_a_fillet_is_concave(tmp_path: Path) -> None:
     contact = outer_of(result)
     assert np.allclose(contact["normal"], (math.sqrt(0.5), 0.0, math.sqrt(0.5)), atol=1e-6)
     assert np.allclose(contact["curvatures"], (0.0, -250.0), atol=1e-6)
-    # the fillet's smooth face goes on in the neighbouring walls: the sides of the bracket are its edge
+    # the fillet's smooth face goes on in both walls: the sides of the bracket are its edge
     assert contact["edge_distance"] == pytest.approx(0.01, rel=1e-3)
     assert np.array_equal(result.fixed, np.abs(result.body.points[:, 2]) < 1e-9)
 
