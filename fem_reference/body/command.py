@@ -9,8 +9,33 @@ from typing import Any
 
 from ..common.arguments import Study
 
+LEAST_GMSH = (4, 12)
+"""Oldest release of gmsh whose CAD kernel and Python interface bodies need."""
+
+
+def release_of(version: str) -> tuple[int, ...]:
+    """Major and minor number of a version."""
+    return tuple(int(part) for part in version.split(".")[:2])
+
+
+def require_gmsh() -> None:
+    """Refuse a gmsh that is too old.
+
+    Raises:
+        SolverError: it is older than `LEAST_GMSH`.
+    """
+    import gmsh
+
+    from ..common.errors import SolverError
+
+    if release_of(gmsh.__version__) < LEAST_GMSH:
+        raise SolverError(
+            f"gmsh is {gmsh.__version__}; a body from a file needs 4.12 or later: pip install gmsh"
+        )
+
 
 def _mesh(document: Any, arguments: argparse.Namespace) -> None:
+    require_gmsh()
     from .mesh_file import write_body_mesh
     from .scene import parse_body_scene
 
@@ -38,6 +63,7 @@ def _groups_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _groups(arguments: argparse.Namespace) -> None:
+    require_gmsh()
     from .mesh_file import groups_of
 
     text = json.dumps(groups_of(arguments.file, arguments.unit), allow_nan=False)

@@ -11,6 +11,7 @@ import meshio
 import numpy as np
 import pytest
 
+from fem_reference.body.command import require_gmsh
 from fem_reference.body.mesh_file import write_body_mesh
 from fem_reference.body.scene import parse_body_scene
 from fem_reference.common.errors import RunError, SceneError, SolverError
@@ -163,3 +164,9 @@ def test_elements_too_large_for_a_mesh_are_a_failure(tmp_path: Path) -> None:
     assert not (tmp_path / "body.vtu").exists() and not (tmp_path / "body.json").exists()
     with pytest.raises(SceneError, match="--size-factor is 20; it must lie between"):
         write_body_mesh(tmp_path / "body.vtu", scene, 20.0)
+
+
+def test_an_old_gmsh_is_refused_by_its_version(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gmsh, "__version__", "4.8.4")
+    with pytest.raises(SolverError, match=r"gmsh is 4\.8\.4; .* 4\.12"):
+        require_gmsh()
