@@ -1,4 +1,4 @@
-//! Which features of scenes have a comparator: what of the reduced models is held against an independent solution, and how
+//! Which features of scenes have a comparator: what of the reduced models is compared with an independent solution, and how
 //! far the two lie apart.
 //!
 //! Nothing is written by hand but the list of features, each a question to a scene. Everything else is found: scenes, models

@@ -10,7 +10,7 @@ pub struct Theory {
     /// The measure, as part of names; after the place in sentences.
     measure: &'static str,
     /// Largest value up to which the theory is relied on.
-    bound: f64,
+    pub(crate) bound: f64,
     /// What is wrong beyond, and what to do.
     beyond: &'static str,
 }

@@ -47,16 +47,15 @@ pub struct ContactInfo {
     pub edge_distance: f64,
 }
 
-/// What the description of a mesh says that models need.
-#[derive(Debug, Clone, Deserialize)]
-pub struct BodyMeshInfo {
-    /// By body.
-    pub contacts: Contacts,
+/// What models need of the description of a mesh.
+#[derive(Deserialize)]
+struct BodyMeshInfo {
+    contacts: Contacts,
 }
 
 /// Where outer and inner body strike.
-#[derive(Debug, Clone, Deserialize)]
-pub struct Contacts {
+#[derive(Deserialize)]
+struct Contacts {
     outer: ContactInfo,
     inner: Option<ContactInfo>,
 }

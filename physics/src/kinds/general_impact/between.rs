@@ -11,21 +11,13 @@ use crate::contact::Hertz;
 use crate::dynamics::MovingBody;
 use crate::dynamics::system::System;
 use crate::error::Result;
+use crate::kinds::plate_impact;
+use crate::result::limit::SMALL_DEFLECTION;
 use crate::scene::{DEFAULT_MODES, Edge, Inner, Material, Outer, Plate, Shape};
 use nalgebra::Vector3;
 
-/// Area of the circle over that of an ellipse from which on there is a warning.
-const ELLIPTIC: f64 = 1.05;
-/// Deflection of a plate over its thickness, and patch over thickness, up to which models were compared.
-const SMALL_DEFLECTION: f64 = 0.3;
-const MEASURED_PATCH: f64 = 1.05;
-/// Share of the patch that contacts have to be able to exceed before they become punches.
-const REACH: f64 = 1.2;
 /// Blocks of Ritz vectors that are left out to see what modes change.
 const DROPPED: usize = 1;
-/// Smallest patch over the thickness of a plate that its mesh is made for.
-const SMALLEST_PATCH: f64 = 0.05;
-
 /// What the outer body strikes, if that is elastic.
 #[derive(Debug)]
 pub(super) struct Between {
@@ -85,18 +77,10 @@ impl Between {
         let normals: Vec<Vector3<f64>> = elastic.contacts.iter().map(|c| Vector3::from(c.normal)).collect();
         let mut warnings = elastic.warnings.clone();
         warnings.extend(elastic.patch_warnings(patch));
-        warnings.extend(punches(&system, patch));
-        let tips = [Some(given.shape.tip_radius()), inner.map(|inner| inner.shape.tip_radius())];
-        let yields = body.material.yield_strength.is_some();
-        for (k, tip) in tips.into_iter().enumerate().filter_map(|(k, tip)| Some((k, tip?))) {
-            let area = elastic.sphere(k, tip)?.area;
-            if yields && area > ELLIPTIC {
-                warnings.push(format!(
-                    "{} contact: it is an ellipse, whose pressure is {:.0} % higher than that of the circle that the law of plastic contacts and the elastic speed assume",
-                    ["outer", "inner"][k],
-                    100.0 * (area - 1.0)
-                ));
-            }
+        warnings.extend(plate_impact::punches(&system, patch));
+        let radii = [Some(given.shape.tip_radius()), inner.map(|inner| inner.shape.tip_radius())];
+        if body.material.yield_strength.is_some() {
+            warnings.extend(elastic.ellipses(radii)?);
         }
         let between = Self {
             coarse: coarse.map(join),
@@ -116,26 +100,22 @@ impl Between {
     pub(super) fn of_plate(plate: &Plate, outer: MovingBody, given: &Outer) -> Result<(System, Self)> {
         let law = Hertz::new(outer.tip_radius, &outer.material, &plate.material);
         let hit = HertzImpact { mass: outer.mass, speed: outer.speed, stiffness: law.stiffness };
-        let patch =
-            law.contact_radius(hit.force_peak()).max(SMALLEST_PATCH * plate.thickness.min(plate.radius));
+        let patch = law
+            .contact_radius(hit.force_peak())
+            .max(plate_impact::SMALLEST_PATCH * plate.thickness.min(plate.radius));
         let body = cached::plate(plate, [patch; 2], DEFAULT_MODES, &MeshOptions::default())?;
         let tip =
             sphere_radius(&given.shape).map_or(0.0, |radius| sphere_residual(radius, &given.material, patch));
         let slow = std::f64::consts::PI / hit.duration();
         let system = System::on_body(outer, &body.modal_body(DEFAULT_MODES, slow), &plate.material, tip);
-        let mut warnings = punches(&system, [patch; 2]);
+        let mut warnings = plate_impact::warnings(plate.thickness, [patch; 2], &system);
         let yielding: f64 =
             system.elastic().map(|k| (system.approach[0][k] / system.oscillators[k].omega).powi(2)).sum();
         let deflection = (2.0 * system.initial_energy() * yielding).sqrt() / plate.thickness;
-        if deflection > SMALL_DEFLECTION {
+        let bound = SMALL_DEFLECTION.bound;
+        if deflection > bound {
             warnings.push(format!(
-                "the plate may deflect by up to {deflection:.2} of its thickness, as its energy allows: linear plate theory omits above {SMALL_DEFLECTION} that the plate stretches"
-            ));
-        }
-        let ratio = patch / plate.thickness;
-        if ratio > MEASURED_PATCH {
-            warnings.push(format!(
-                "the contact patch is {ratio:.2} times as wide as the plate is thick; force peaks were compared with finite elements up to {MEASURED_PATCH}"
+                "the plate may deflect by up to {deflection:.2} of its thickness, as its energy allows: linear plate theory omits above {bound} that the plate stretches"
             ));
         }
         let between = Self {
@@ -154,21 +134,6 @@ impl Between {
         let Some(mass) = self.free_mass else { return [0.0; 2] };
         [(inner * self.alignment - outer) / mass, (inner - outer * self.alignment) / mass]
     }
-}
-
-/// A sentence for each contact that becomes a flat punch before its radius is that of the `patch` in m.
-fn punches(system: &System, patch: [f64; 2]) -> Vec<String> {
-    let reach = system.residual.map_or([f64::INFINITY; 2], |residual| residual.reach(&system.laws));
-    let near = |k: &usize| system.can_close(*k) && reach[*k] < REACH * patch[*k];
-    let punch = |k: usize| {
-        format!(
-            "{} contact: above a radius of {:.3} mm (about {:.3} mm is expected) it is treated as a flat punch",
-            ["outer", "inner"][k],
-            1e3 * reach[k],
-            1e3 * patch[k]
-        )
-    };
-    (0..2).filter(near).map(punch).collect()
 }
 
 #[cfg(test)]

@@ -18,6 +18,8 @@ const REVISION: u32 = 1;
 const COARSER: f64 = 2.0;
 /// Endings of files that know their unit.
 const CAD: [&str; 5] = ["step", "stp", "brep", "iges", "igs"];
+/// Area of the circle over that of an ellipse from which on there is a warning.
+const ELLIPTIC: f64 = 1.05;
 /// Layers of elements through the wall below which frequencies are some tenths of a per cent too high.
 const LAYERS: f64 = 2.0;
 /// Contact patches that an edge has to be away, at least.
@@ -38,9 +40,15 @@ pub(super) struct ElasticBody {
     pub(super) warnings: Vec<String>,
 }
 
-/// Bodies that this process has reduced, by what their meshes depend on and Poisson's ratio: a sweep over speeds, masses and moduli needs
-/// one.
-static REDUCED: LazyLock<MemoList<(String, f64, ElasticBody)>> = LazyLock::new(MemoList::default);
+/// What a reduced body depends on: the key of its mesh, and Poisson's ratio; Young's modulus and density scale it.
+type ReducedKey = (String, f64);
+
+/// Bodies that this process has reduced: a sweep over speeds, masses and moduli needs one.
+static REDUCED: LazyLock<MemoList<(ReducedKey, ElasticBody)>> = LazyLock::new(MemoList::default);
+
+fn reduced_key(body: &Body) -> ReducedKey {
+    (body.mesh_request(1.0).key, body.material.poisson_ratio)
+}
 
 impl ElasticBody {
     /// Of `body`.
@@ -48,19 +56,15 @@ impl ElasticBody {
     /// # Errors
     /// Those of the mesher, [`Error::Solver`] for a mesh that is of no use.
     pub(super) fn new(body: &Body) -> Result<Self> {
-        let (key, ratio) = (body.mesh_request(1.0).key, body.material.poisson_ratio);
-        let found = REDUCED.find_or(
-            |(own, own_ratio, _)| *own == key && *own_ratio == ratio,
-            || Ok((key.clone(), ratio, Self::build(body)?)),
-        )?;
-        Ok(found.2.clone())
+        let key = reduced_key(body);
+        let found = REDUCED.find_or(|(own, _)| *own == key, || Ok((key.clone(), Self::build(body)?)))?;
+        Ok(found.1.clone())
     }
 
     /// The same if this process has reduced it.
     pub(super) fn known(body: &Body) -> Option<Self> {
-        let (key, ratio) = (body.mesh_request(1.0).key, body.material.poisson_ratio);
-        let all = REDUCED.all();
-        all.iter().find(|entry| entry.0 == key && entry.1 == ratio).map(|entry| entry.2.clone())
+        let key = reduced_key(body);
+        REDUCED.all().iter().find(|entry| entry.0 == key).map(|entry| entry.1.clone())
     }
 
     fn build(body: &Body) -> Result<Self> {
@@ -120,6 +124,25 @@ impl ElasticBody {
                 1e3 * tip
             ))
         })
+    }
+
+    /// A sentence for each contact with a tip of the radius `tips` in m that is an ellipse.
+    ///
+    /// # Errors
+    /// As [`Self::sphere`].
+    pub(super) fn ellipses(&self, tips: [Option<f64>; 2]) -> Result<Vec<String>> {
+        let mut found = Vec::new();
+        for (k, name) in ["outer", "inner"].into_iter().enumerate() {
+            let Some(tip) = tips[k] else { continue };
+            let area = self.sphere(k, tip)?.area;
+            if area > ELLIPTIC {
+                found.push(format!(
+                    "{name} contact: it is an ellipse, whose pressure is {:.0} % higher than that of the circle that the law of plastic contacts and the elastic speed assume",
+                    100.0 * (area - 1.0)
+                ));
+            }
+        }
+        Ok(found)
     }
 
     /// The body's modes and residual flexibility for contact patches of the radii `patch` in m; and the same of the coarser mesh.

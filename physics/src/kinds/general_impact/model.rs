@@ -23,8 +23,8 @@ use std::time::Instant;
 
 /// Tolerance of the runs that compare force peaks with and without what the model omits.
 const LOW_ACCURACY: f64 = 1e-6;
-/// Error of a mesh over the change from one with elements twice as large: 1/(2^p - 1) with the order p = 1.6 (between 1.3 and 3.3 on ten
-/// meshes of a plate, whose edge is singular).
+/// Error of a mesh over the change from one with elements twice as large: 1/(2^p - 1) with the order p = 1.6. On nine meshes of a plate,
+/// whose edge is singular, p was 1.8 to 3.3: the error is rather stated too large.
 const OF_COARSER: f64 = 0.5;
 /// Quantities whose change is the error by modes or mesh.
 const COMPARED: [&str; 3] = ["efficiency", "outer_force_peak", "inner_force_peak"];
@@ -171,8 +171,7 @@ impl ContactModel {
         Some(ElasticLimit { outer, inner: None })
     }
 
-    /// Relative change of the force peak by the flexibility of spheres beyond that of Hertz's half-spaces, which the model omits where there is no
-    /// elastic body; with one, that by fewer of its modes.
+    /// Estimated error by what the model omits: higher modes of an elastic body, found with fewer of them, or how spheres deform.
     fn truncation(&self) -> Option<f64> {
         match &self.between {
             Some(between) => {

@@ -140,7 +140,7 @@ pub(super) fn continuum(
     let fluid = fluid_forces(setup, |radii| continuum_shapes(setup, predictor, elastic, &inner, radii))?;
     let tips = tip_residuals(setup, predictor.patch_radius, |r, m, a| bodies.sphere_residual(r, m, a))?;
     let system = join(setup, plate, tips)?;
-    let warnings = validity::warnings(setup, predictor, &system);
+    let warnings = validity::warnings(setup.plate.thickness, predictor.patch_radius, &system);
     let slower = setup.fluid.as_ref().map_or(1.0, |fluid| mass_factor(fluid.added_mass_frequency_ratio));
     Ok(Assembled { system, omega_next: omega_next / slower.sqrt(), fluid, warnings })
 }

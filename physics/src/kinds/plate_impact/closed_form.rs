@@ -158,7 +158,7 @@ pub(super) fn choose(
     if estimate.is_nan() || estimate > tolerance {
         return Ok(None);
     }
-    let warnings = validity::warnings(setup, &predictor, &system);
+    let warnings = validity::warnings(setup.plate.thickness, predictor.patch_radius, &system);
     let candidate = CandidateModel {
         model: Model::C.to_string(),
         modes: count,

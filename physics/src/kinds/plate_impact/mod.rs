@@ -27,9 +27,11 @@ use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary, Table
 use crate::scene::{Model, Scene};
 use std::f64::consts::FRAC_PI_2;
 
+pub(super) use predictor::SMALLEST_PATCH;
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
 pub use scene::{MAX_MODES, PlateImpact};
 pub(super) use scene::{PLATE, read_plate, slenderness};
+pub(super) use validity::{punches, warnings};
 
 /// Its name in scene files.
 pub(super) const NAME: &str = "plate-impact";

@@ -10,7 +10,7 @@ use crate::scene::Plate;
 /// Smallest patch, over the plate's thickness or radius, that model C meshes its plate for. What the plate lacks to two half-spaces
 /// depends on a smaller one by less than the square of this, and elements as flat as that make the stiffness of a thin plate
 /// a matter of rounding.
-const SMALLEST_PATCH: f64 = 0.05;
+pub(in crate::kinds) const SMALLEST_PATCH: f64 = 0.05;
 
 /// Widest patch, over the tip's radius, of a body that is never reached.
 const NEVER_REACHED: f64 = 0.25;

@@ -143,7 +143,7 @@ impl<'a> Trials<'a> {
     /// [`Self::continuum`], ready to run, of a dry impact.
     pub(super) fn closed_form(&self, modes: usize) -> Assembled {
         let system = self.layered(modes);
-        let warnings = validity::warnings(self.setup, &self.predictor, &system);
+        let warnings = validity::warnings(self.setup.plate.thickness, self.predictor.patch_radius, &system);
         Assembled { system, omega_next: self.layer.omega_next(modes), fluid: None, warnings }
     }
 

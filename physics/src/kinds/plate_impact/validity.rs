@@ -11,8 +11,6 @@
 //!
 //! In a fluid (titanium plate between steel spheres, 1 to 50 mPa s) the film of the models takes up to a quarter too much energy.
 
-use super::PlateImpact;
-use super::predictor::Predictor;
 use crate::dynamics::system::System;
 use crate::scene::Model;
 
@@ -52,31 +50,37 @@ pub(super) fn film_warning(loss: f64, system: &System) -> Option<String> {
     })
 }
 
-/// What a user has to know before relying on model C of `setup`, made to `system`: one sentence per reason, none if there is no reason.
-pub(super) fn warnings(setup: &PlateImpact, predictor: &Predictor, system: &System) -> Vec<String> {
+/// What a user has to know before relying on model C, made to `system`, with contact patches of the radii `patch` in m on a plate of
+/// `thickness` m: one sentence per reason, none if there is no reason.
+pub(in crate::kinds) fn warnings(thickness: f64, patch: [f64; 2], system: &System) -> Vec<String> {
     let mut warnings = Vec::new();
-    let patch = predictor.patch_radius[0].max(predictor.patch_radius[1]);
-    let ratio = patch / setup.plate.thickness;
+    let widest_patch = patch[0].max(patch[1]);
+    let ratio = widest_patch / thickness;
     let (widest, error) = MEASURED[MEASURED.len() - 1];
     if ratio > widest {
         warnings.push(format!(
             "model {}: the contact patch (radius {:.3} mm) is {ratio:.2} times as wide as the plate is thick ({:.3} mm); force peaks are within {:.0} % of the reference up to {widest} and unknown beyond: compare with the reference before relying on them",
             Model::C,
-            1e3 * patch,
-            1e3 * setup.plate.thickness,
+            1e3 * widest_patch,
+            1e3 * thickness,
             100.0 * error
         ));
     }
-    let reach = system.residual.map_or([f64::INFINITY; 2], |residual| residual.reach(&system.laws));
-    for (reach, patch) in reach.into_iter().zip(predictor.patch_radius) {
-        if reach < REACH * patch {
-            warnings.push(format!(
-                "model {}: above a contact radius of {:.3} mm the contact (about {:.3} mm) is treated as a flat punch: compare with the reference, or take fewer modes",
-                Model::C,
-                1e3 * reach,
-                1e3 * patch
-            ));
-        }
-    }
+    warnings.extend(punches(system, patch));
     warnings
+}
+
+/// A sentence for each contact that becomes a flat punch before its radius is that of the `patch` in m.
+pub(in crate::kinds) fn punches(system: &System, patch: [f64; 2]) -> Vec<String> {
+    let reach = system.residual.map_or([f64::INFINITY; 2], |residual| residual.reach(&system.laws));
+    let near = |k: &usize| system.can_close(*k) && reach[*k] < REACH * patch[*k];
+    let punch = |k: usize| {
+        format!(
+            "model {}: above a contact radius of {:.3} mm the contact (about {:.3} mm) is treated as a flat punch: compare with the reference, or take fewer modes",
+            Model::C,
+            1e3 * reach[k],
+            1e3 * patch[k]
+        )
+    };
+    (0..2).filter(near).map(punch).collect()
 }
