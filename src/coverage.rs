@@ -22,14 +22,14 @@ pub fn features() -> impl Iterator<Item = &'static Feature> {
     kinds.next().into_iter().flatten().chain(&OF_ANY).chain(kinds.flatten())
 }
 
-/// A scene that a model takes, and what it was held against.
+/// A scene that a model takes, and what it was compared with.
 #[derive(Debug)]
 pub struct Case<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// The model.
     pub model: Model,
-    /// What came of it; `None`: nothing is held against it.
+    /// What came of it; `None`: nothing is compared with it.
     pub finding: Option<Finding>,
 }
 
@@ -113,13 +113,13 @@ pub struct FeatureCoverage {
     pub partners: Vec<FeatureComparison>,
 }
 
-/// A model and what it is held against.
+/// A model and what it is compared with.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FeatureComparison {
     /// The reduced model.
     pub model: String,
     /// "axisymmetric" or "solid" finite elements, [`CLOSED_FORM`], or the name of another program; `None`: the model takes the
-    /// scenes, but nothing is held against it.
+    /// scenes, but nothing is compared with it.
     pub partner: Option<String>,
     /// Names of the scenes.
     pub scenes: Vec<String>,

@@ -1,6 +1,6 @@
 //! Accepted changes of tolerances and references, with the reason: JSON lines beside the scene file.
 //!
-//! A reference that was accepted once is what a new one is held against: if the new one differs by more than the 95 %
+//! A reference that was accepted once is what a new one is compared with: if the new one differs by more than the 95 %
 //! bands of both, the gate fails until somebody says why.
 
 use super::json_lines;

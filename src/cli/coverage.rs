@@ -1,4 +1,4 @@
-//! `impactcheck coverage`: which features of scenes are held against an independent solution.
+//! `impactcheck coverage`: which features of scenes are compared with an independent solution.
 
 use super::external::{self, Permission};
 use super::requested_model::RequestedModel;

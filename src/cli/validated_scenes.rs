@@ -33,7 +33,7 @@ pub(super) fn known(context: &Context, found: &[(&Stored, Vec<Validation>)]) -> 
     known
 }
 
-/// Which features of the project's scenes are held against what, as far as is `known`; without a project, or where a scene of
+/// Which features of the project's scenes are compared with what, as far as is `known`; without a project, or where a scene of
 /// it can't be read, that is told and the report stands without it.
 pub(super) fn coverage(context: &Context, known: &[Validation]) -> Option<Coverage> {
     let found = scene::every().and_then(|files| {

@@ -200,7 +200,7 @@ impl Discrepancy {
         self.difference_uncertainty.or(self.uncertainty)
     }
 
-    /// Magnitude that is held against the tolerance: of the difference without the known bias; NaN if it is not determined.
+    /// Magnitude that is compared with the tolerance: of the difference without the known bias; NaN if it is not determined.
     pub fn checked(&self) -> f64 {
         self.difference.map_or(f64::NAN, |difference| (difference - self.bias.unwrap_or(0.0)).abs())
     }

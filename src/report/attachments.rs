@@ -41,7 +41,7 @@ pub struct Attachments {
     pub acceptances: Vec<Acceptance>,
     /// Scenes in which models were compared with references, this one among them.
     pub validated: Arc<[Validation]>,
-    /// Which features of scenes are held against what.
+    /// Which features of scenes are compared with what.
     pub coverage: Option<Arc<Coverage>>,
 }
 

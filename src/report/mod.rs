@@ -84,7 +84,7 @@ impl Report<'_> {
         self.scenes.first().map_or(&[], |scene| &scene.attachments.validated)
     }
 
-    /// Which features of scenes are held against what, if that is known.
+    /// Which features of scenes are compared with what, if that is known.
     fn coverage(&self) -> Option<&Coverage> {
         self.scenes.first().and_then(|scene| scene.attachments.coverage.as_deref())
     }

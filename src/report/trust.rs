@@ -107,7 +107,7 @@ pub(crate) fn validity(scene: &Scene, summary: &Summary) -> Vec<String> {
     std::iter::once(range).chain((!yielding).then_some(unchecked)).collect()
 }
 
-/// Where `model` was held against references in other scenes, seen from the scene that `reference` lies in: whether that was
+/// Where `model` was compared with references in other scenes, seen from the scene that `reference` lies in: whether that was
 /// near by, and how far off the model was there.
 pub(crate) fn validated(
     scene: &Scene,

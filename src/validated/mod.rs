@@ -1,4 +1,4 @@
-//! Where models were held against references, and how far off they were there: what trust in them elsewhere rests on.
+//! Where models were compared with references, and how far off they were there: what trust in them elsewhere rests on.
 //!
 //! One entry per scene and model, made by comparisons and never by hand. The project brings along those of its own scenes,
 //! whose references are too large to come with it; those of a user's scenes lie in the user's store, beside the references.
@@ -25,7 +25,7 @@ pub const SAME_SINCE: u32 = 3;
 /// Significant digits kept: more than any band leaves sure, and the same on every machine.
 const DIGITS: usize = 7;
 
-/// A model held against a reference in one scene.
+/// A model compared with a reference in one scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Validation {
     /// Name of the scene.
@@ -141,7 +141,7 @@ impl Validation {
         self.scene == scene.name && self.scene_hash == scene.hash() && self.model == model.to_string()
     }
 
-    /// Whether both are of the same scene and model by name, held against the same.
+    /// Whether both are of the same scene and model by name, compared with the same.
     fn is_of_same(&self, other: &Self) -> bool {
         (&self.scene, &self.model, &self.partner) == (&other.scene, &other.model, &other.partner)
     }

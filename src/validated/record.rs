@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 const FILE: &str = "validated.jsonl";
 
-/// The validations that the project brings along, of its own scenes. What is in the file is held against scenes, models and
+/// The validations that the project brings along, of its own scenes. What is in the file is compared with scenes, models and
 /// stored references by the project's tests.
 ///
 /// # Errors

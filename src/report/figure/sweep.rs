@@ -7,7 +7,7 @@ use crate::plot::{ChartPanel, ColourMap, Series, chart, colour_maps};
 use crate::scene::{Model, unknown_name};
 use crate::sweep::{Known, Plan, Record, Table};
 
-/// The paper's rule for the optimum (section 4.1), which results can be held against.
+/// The paper's rule for the optimum (section 4.1), which results can be compared with.
 const RULE: &str = "paper: best where contact ≈ half the first period";
 /// Name of the references' marks.
 const REFERENCE: &str = "reference (uncertainty 95 %)";

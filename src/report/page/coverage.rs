@@ -1,4 +1,4 @@
-//! The page of coverage: features of scenes in rows, models and what they are held against in columns.
+//! The page of coverage: features of scenes in rows, models and what they are compared with in columns.
 
 use crate::coverage::{CLOSED_FORM, Coverage, FeatureComparison, FeatureCoverage};
 use crate::format::{percent_above, words};

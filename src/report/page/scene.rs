@@ -76,7 +76,7 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
     all
 }
 
-/// The scene among those in which the models were held against references; nothing of kinds without a place there.
+/// The scene among those in which the models were compared with references; nothing of kinds without a place there.
 fn validated(report: &SceneReport) -> Markup {
     let here = Place::of(report.scene, &report.comparison.reference);
     let map = here.and_then(|here| ValidatedMap::of(&report.attachments.validated, Some(here)));

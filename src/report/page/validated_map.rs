@@ -1,4 +1,4 @@
-//! The map of validated scenes: where models were held against references, how right they were there, and where a scene lies
+//! The map of validated scenes: where models were compared with references, how right they were there, and where a scene lies
 //! among them. Two views per model share the axis of the patch, so that what is near in both is near in all three numbers.
 
 use crate::format::{percent, percent_above, significant, words};

@@ -10,7 +10,7 @@
 //!
 //! with the share of what the layer corrects that it may itself be off by, the damping under the contacts that models with few
 //! modes lack, and the error that model C was found to have against the finite-element reference as the floor. The same layer
-//! with fewer modes tells how many model C needs; built, model C is held against itself with fewer modes (`truncation`), and
+//! with fewer modes tells how many model C needs; built, model C is compared with itself with fewer modes (`truncation`), and
 //! has more of them where that finds too large an error. Of a thick plate the layer says little: model C alone is asked.
 
 use super::assembled::Cut;
@@ -58,7 +58,7 @@ const TRUNCATED_SHARE: f64 = 0.25;
 /// Patch radius over the plate's thickness up to which the estimate is a promise: of 1400 random scenes 3 of 32 promises were
 /// broken beyond, 6 of 3027 up to there.
 pub(super) const STATED_ACCURACY: f64 = 0.9;
-/// Fewest bending modes that model C is taken with: held against itself with more or fewer, it would agree by chance too often.
+/// Fewest bending modes that model C is taken with: compared with itself with more or fewer, it would agree by chance too often.
 pub(super) const LEAST: usize = 4;
 /// Most modes that model C is built with when its first ones turn out to be too few.
 const MOST_BUILT: usize = 128;

@@ -6,7 +6,7 @@
 //! What the modes left out lack is their inertia: a mode of the frequency omega follows a force of the contacts' frequency w later by
 //! powers of w/omega. Weighed by what the modes yield, over what the outer contact yields and over what the plate moves by, that
 //! estimates the error of the forces ([`ModalTruncation`]); impacts that touch again and again exceed others by far. A number of modes that looks
-//! enough is held against twice as many: without that about 1 in 100 promises of 0.3, 1 and 3 % was broken, by up to ten times the
+//! enough is compared with twice as many: without that about 1 in 100 promises of 0.3, 1 and 3 % was broken, by up to ten times the
 //! estimate. Their shapes are off by what the closed form may be ([`misshapen`]), so that impacts which take small errors far tell it.
 
 use super::PlateImpact;

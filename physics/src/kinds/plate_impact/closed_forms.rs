@@ -1,4 +1,4 @@
-//! Parts of the models beside closed forms, for the bodies of a scene: what of it is held against an exact solution.
+//! Parts of the models beside closed forms, for the bodies of a scene: what of it is compared with an exact solution.
 
 use super::PlateImpact;
 use crate::actuator::beam::{Beam, MODES};
@@ -16,7 +16,7 @@ use crate::material::Relaxation;
 use crate::scene::{Bender, Fluid, Model, Shape};
 use std::f64::consts::{PI, TAU};
 
-/// Modes whose frequencies are held against closed forms.
+/// Modes whose frequencies are compared with closed forms.
 const MOUNTED_MODES: usize = 8;
 /// Duration of a contact over the time of its relaxation.
 const SHORT: f64 = 0.01;

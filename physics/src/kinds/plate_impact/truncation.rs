@@ -1,6 +1,6 @@
 //! What the modes that a reduced model leaves out would change.
 //!
-//! Models A and B are held against Kirchhoff's plate with all its modes. Model C is held against the plate as an elastic layer
+//! Models A and B are compared with Kirchhoff's plate with all its modes. Model C is compared with the plate as an elastic layer
 //! with more modes ([`Trials`]), which knows bending far from the rim, and against itself with fewer modes, which knows the
 //! rest. A fluid's film and drag are omitted of both.
 
@@ -78,7 +78,7 @@ pub(super) fn estimate(
     };
     let modes = system.bending_modes();
     let mut truncation = of(modes);
-    // models A and B are held against all modes of their own plate, which are no waves under a contact
+    // models A and B are compared with all modes of their own plate, which are no waves under a contact
     let undamped = if model == Model::C { trials.predictor.undamped(&setup.plate, omega_next) } else { 0.0 };
     if model == Model::C && setup.plate.thickness > THIN * setup.plate.radius {
         truncation = truncation.or(of_continuum(system, omega_next, &options));

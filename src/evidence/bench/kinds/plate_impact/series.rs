@@ -30,7 +30,7 @@ const SIZES: [(&str, f64, f64); 5] = [
 /// And then the shapes too.
 const SHAPES: [(&str, f64, f64); 2] =
     [("plate.thickness", 1.4e-3, 2.6e-3), ("materials.steel.poisson_ratio", 0.25, 0.35)];
-/// Relative error of the integration of the impacts that the others are held against.
+/// Relative error of the integration of the impacts that the others are compared with.
 const EXACT: f64 = 1e-7;
 
 /// Of so many impacts one has its bodies meshed once more, finer by so much in every direction.
@@ -46,7 +46,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Of pairs of what is held against what.
+    /// Of pairs of what is compared with what.
     fn of(pairs: &[(PlateQuantities, PlateQuantities)]) -> Self {
         let miss = |ours: f64, exact: f64| (ours / exact - 1.0).abs();
         let of = |error: &dyn Fn(&PlateQuantities, &PlateQuantities) -> f64| {

@@ -12,7 +12,7 @@ use crate::validated;
 
 /// Loss factors; 0 is the elastic plate.
 const LOSS_FACTORS: [f64; 9] = [0.0, 0.005, 0.01, 0.015, 0.02, 0.03, 0.05, 0.07, 0.1];
-/// The one that the paper's statement is held against, usual for stiff polymers.
+/// The one that the paper's statement is compared with, usual for stiff polymers.
 const USUAL: f64 = 0.02;
 /// What the damping takes by the paper, in efficiency, and what "about" may be off by.
 const PAPER: (f64, f64) = (0.02, 0.005);

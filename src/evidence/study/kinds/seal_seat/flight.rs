@@ -2,7 +2,7 @@
 //!
 //! MuJoCo's flights and shocks are what `python -m fem_reference flights` has stored; without them the rocker's statements are left. A flight's seat can hang on
 //! differences far below any model's error: the map of landings has fractal edges. Only flights whose neighbours all reach the
-//! same seat are held against each other; the others are listed.
+//! same seat are compared with each other; the others are listed.
 
 use crate::error::{Error, Result};
 use crate::evidence::study::{Cell, Claim, Note, Study, of_project};
