@@ -56,13 +56,11 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     };
     let text = format!("#:schema ./{FILE}\n{}", text.replacen("NAME", name, 1));
     // a name that can't be one is refused as it would be in a file
-    let scene = Scene::parse(&file.display().to_string(), &text)?;
+    Scene::parse(&file.display().to_string(), &text)?;
     write_file(&file.with_file_name(FILE), crate::kinds::schema().to_string().as_bytes())?;
     write_file(&file, text.as_bytes())?;
     let file = file.display();
     context.note(format_args!("wrote {file}; edit it, then: impactcheck reduced {file}"));
-    if kinds::of(&scene).has_reference() {
-        context.note(format_args!("with FEniCSx also: impactcheck compare {file} --compute --out my-report"));
-    }
+    context.note(format_args!("with FEniCSx also: impactcheck compare {file} --compute --out my-report"));
     Ok(ExitStatus::Pass)
 }

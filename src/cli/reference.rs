@@ -4,7 +4,6 @@ use super::progress::Bar;
 use super::{Context, JsonArgument};
 use crate::comparison::contradictions;
 use crate::error::{Error, ExitStatus, Result};
-use crate::kinds;
 use crate::reference::{Lookup, Resolution, Store, Stored, TargetError, Wish};
 use crate::scene::{Geometry, Scene};
 use clap::{Args, Subcommand};
@@ -196,10 +195,7 @@ pub fn problem(scene: &Scene, resolution: Resolution, lookup: &Lookup) -> String
     let which = format!("the reference of `{}` (resolution `{}`)", scene.name, resolution.argument());
     match lookup {
         Lookup::Found(_) => format!("{which} is there"),
-        Lookup::Missing => match kinds::without_reference(scene) {
-            Some(reason) if resolution != Resolution::Imported => reason,
-            _ => format!("{which} is missing: it is not computed yet"),
-        },
+        Lookup::Missing => format!("{which} is missing: it is not computed yet"),
         Lookup::Stale { reason } => format!("{which} is stale: {reason}"),
         Lookup::Damaged { file, reason } => format!("{which} is damaged: {}: {reason}", file.display()),
     }
@@ -213,9 +209,6 @@ pub fn compute(
     store: &Store,
     wish: &Wish,
 ) -> Result<Stored> {
-    if let Some(reason) = kinds::without_reference(scene) {
-        return Err(Error::Reference(reason));
-    }
     let python = crate::reference::python()?;
     let bar = Bar::new(context, &format!("{} ({resolution})", scene.name));
     let stored = crate::reference::solve_with(&python, scene, resolution, store, wish, &mut |p| bar.show(p))?;

@@ -2,7 +2,7 @@
 
 use super::{Context, compare_inputs, reference};
 use crate::error::{Error, Result};
-use crate::kinds;
+
 use crate::reference::{Lookup, Resolution, Store, Stored, Wish};
 use crate::scene::{self, Scene};
 use std::path::{Path, PathBuf};
@@ -47,9 +47,7 @@ pub(super) fn look_up(
     if problems.is_empty() {
         return Ok(found);
     }
-    if scenes.iter().any(|(_, scene)| kinds::without_reference(scene).is_none()) {
-        hints.push("`impactcheck doctor` shows what a computation needs".into());
-    }
+    hints.push("`impactcheck doctor` shows what a computation needs".into());
     Err(Error::Reference(problems.join("\n  ")).hint(hints))
 }
 
@@ -98,7 +96,7 @@ fn advice(context: &Context, file: &Path, scene: &Scene, resolution: Resolution,
         other => format!("{named} --resolution {}", other.argument()),
     };
     match lookup {
-        _ if resolution == Resolution::Imported || kinds::without_reference(scene).is_some() => {
+        _ if resolution == Resolution::Imported => {
             format!("import one with {}", command(&format!("import {named} --from FILE")))
         }
         Lookup::Damaged { .. } => format!("compute it again with {}", command(&format!("{own} --fresh"))),

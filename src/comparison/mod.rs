@@ -7,6 +7,7 @@
 //! It is fail, too, if one of the two results contradicts itself ([`Check`]): a history that does not
 //! belong to its summary proves nothing, whatever the summary says.
 
+pub mod budget;
 mod changed_tolerance;
 mod common_mesh;
 mod discrepancy;
@@ -30,7 +31,7 @@ pub use impacts::value_in;
 pub use imported::import;
 pub use input::{ComparisonInput, compare_scene};
 pub use integrity::{Check, contradictions};
-pub use kinds::budget;
+pub use kinds::plate_impact as plate_budget;
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
 pub use reference_check::{ReferenceCheck, ReferenceRow};
 pub use series::{ORDER, STANDARD_ERRORS};

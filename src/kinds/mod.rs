@@ -24,6 +24,7 @@ use crate::error::{Error, Result};
 use crate::result::Summary;
 use crate::scene::{Geometry, Scene};
 use impactcheck_physics::kinds as physics;
+use std::path::Path;
 
 /// What not every kind of scene can be used for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,9 +78,9 @@ pub trait Kind: physics::Kind {
         true
     }
 
-    /// Whether `fem_reference` solves scenes of this kind.
-    fn has_reference(&self) -> bool {
-        true
+    /// The file besides the scene that its reference is made from, if there is one.
+    fn body_file<'a>(&self, _: &'a Scene) -> Option<&'a Path> {
+        None
     }
 
     /// Whether the deck for CalculiX describes `scene`.
@@ -174,19 +175,6 @@ pub fn models_only(scene: &Scene) -> String {
     let kind = of(scene);
     let models: Vec<String> = kind.models().iter().map(ToString::to_string).collect();
     format!("scene `{}` is of kind `{}`, which has model {} only", scene.name, kind.name(), models.join(", "))
-}
-
-/// That there is no finite-element reference of `scene`, and what to compare with instead; `None` if there is one.
-pub fn without_reference(scene: &Scene) -> Option<String> {
-    let kind = of(scene);
-    (!kind.has_reference()).then(|| {
-        format!(
-            "scene `{}`: the project has no finite-element reference for scenes of kind `{}` yet; import a result with \
-             `impactcheck reference import`, or name your own program under [[external]]",
-            scene.name,
-            kind.name()
-        )
-    })
 }
 
 fn refused(scene: &Scene, purpose: Use) -> Error {

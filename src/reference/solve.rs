@@ -33,7 +33,7 @@ pub struct Wish {
 /// killed goes on from there.
 ///
 /// # Errors
-/// [`Error::Reference`] for a kind of scene without a solver, [`Error::Scene`] if the solver does not support the scene, [`Error::Solver`] if there is no
+/// [`Error::Scene`] if the solver does not support the scene, [`Error::Solver`] if there is no
 /// solver or it fails, [`Error::Io`] if the store can't be written.
 pub fn solve(
     scene: &Scene,
@@ -57,9 +57,6 @@ pub fn solve_with(
     wish: &Wish,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Stored> {
-    if let Some(reason) = kinds::without_reference(scene) {
-        return Err(Error::Reference(reason));
-    }
     let mut waiting = || {
         let message = "another run of this solution is under way".to_owned();
         progress(&Progress { phase: "waiting".to_owned(), done: 0.0, message, series: None });
@@ -86,6 +83,9 @@ pub fn solve_with(
     command.args([OsStr::new("solve"), OsStr::new("--scene"), input.as_os_str()]);
     command.args([OsStr::new("--out"), output.as_os_str()]);
     command.args(["--resolution", resolution.first()]);
+    if let Some(file) = kinds::of(scene).body_file(scene) {
+        command.arg("--body").arg(file);
+    }
     if let Resolution::Calculix(_) = resolution {
         command.args(["--solver", "calculix"]);
     }

@@ -5,6 +5,11 @@ use crate::scene::grammar::{
 };
 use crate::scene::quantity::Dimension;
 
+/// Smallest and largest number of elements of a reference across the contact radius.
+pub(super) const CONTACT_ELEMENTS: Bound = Bound { low: Some((2.0, true)), high: Some((64.0, true)) };
+/// Number of quadratic solid elements there if a scene names none.
+pub(super) const SOLID_ELEMENTS: f64 = 3.0;
+
 const SHAPE_KIND: &str = "Shape of the body";
 const SPHERE_RADIUS: Field =
     only(&["sphere"], required("radius", positive(Dimension::LENGTH), "Radius of the sphere"));

@@ -1,5 +1,4 @@
 //! What a comparison of some kinds of scene has besides discrepancies.
 
+pub(super) mod general_impact;
 pub mod plate_impact;
-
-pub use plate_impact as budget;

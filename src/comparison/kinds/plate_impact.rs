@@ -30,11 +30,11 @@
 
 use crate::body::continuum::MeshOptions;
 use crate::comparison::Verdict;
+use crate::comparison::budget::{Part, QuantityBudget, root_of_squares};
 use crate::error::{Error, Result};
 use crate::kinds::plate_impact::variants::{ContinuumSetup, Simplification, Variants};
 use crate::result::{CUT, Outcome, Summary};
 use crate::scene::Scene;
-use serde::Serialize;
 
 /// The quantities of the budget.
 pub const BUDGET_QUANTITIES: [&str; 5] =
@@ -61,44 +61,6 @@ const LOOSEST: f64 = 1e-8;
 const COARSER: f64 = 0.7;
 /// Patch radius for the estimate of its influence, relative to that of model C.
 const NARROWER: f64 = 0.5;
-
-/// The budget of one quantity. Values are in `unit`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct QuantityBudget {
-    /// Name of the quantity.
-    pub quantity: String,
-    /// SI unit.
-    pub unit: String,
-    /// Value of the reference.
-    pub reference: f64,
-    /// Model B less the reference: the sum of the parts and the remainder.
-    pub difference: f64,
-    /// One part per cause, in the order of giving up.
-    pub parts: Vec<Part>,
-    /// The best model C less the reference.
-    pub remainder: f64,
-    /// Half width of the reference's 95 % band; `None` if unknown, and then taken as 0.
-    pub reference_uncertainty: Option<f64>,
-    /// Uncertainty of the best model C: modes, mesh, contact patch, time step.
-    pub model_uncertainty: f64,
-    /// Root of the sum of squares of both uncertainties: the bound on the remainder.
-    pub bound: f64,
-    /// Whether |remainder| is within the bound.
-    pub explained: Verdict,
-}
-
-/// What one simplification causes.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Part {
-    /// Name in [`CAUSES`].
-    pub cause: String,
-    /// What is switched, in words.
-    pub switch: String,
-    /// The value with the simplification less the value without.
-    pub value: f64,
-    /// Uncertainty of `value`.
-    pub uncertainty: f64,
-}
 
 /// The quantities at the links of the chain, of which there is one more than causes.
 type Chain = [[f64; BUDGET_QUANTITIES.len()]; CAUSES.len() + 1];
@@ -238,6 +200,7 @@ fn quantity_budget(
     let bound = reference_uncertainty.unwrap_or(0.0).hypot(model_uncertainty);
     QuantityBudget {
         quantity: quantity.into(),
+        model: "B".into(),
         unit: reference.quantities.get(quantity).map_or("", |quantity| quantity.unit).into(),
         reference: reference_value,
         difference: chain[0][q] - reference_value,
@@ -261,8 +224,4 @@ fn switches(modes: ModeCounts) -> [String; CAUSES.len()] {
         "rigid → elastic spheres: model C".into(),
         format!("{c} → {many_continuum} continuum modes"),
     ]
-}
-
-fn root_of_squares(changes: impl Iterator<Item = f64>) -> f64 {
-    changes.map(|c| c * c).sum::<f64>().sqrt()
 }

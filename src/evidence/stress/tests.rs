@@ -258,11 +258,11 @@ fn an_uncertain_release_is_solved_again() {
     }
 }
 
-/// A light plate vibrates on the contact of the inner body, which has 0.053 (240) of the outer one's mass: with forces known to 1e-9 its
-/// separation differed by 3.8e-4 (3.4e-4).
+/// A light plate vibrates on the contact of the inner body, which has 0.053 (240, 323) of the outer one's mass: with forces known to 1e-9
+/// its separation differed by 3.8e-4 (3.4e-4, 4.7e-4).
 #[test]
 fn a_release_that_a_vibration_decides_is_solved_again() {
-    for seed in [50_000_006_807, 50_000_007_026] {
+    for seed in [50_000_006_807, 50_000_007_026, 60_000_013_958] {
         let report = run(1, seed, &|| ()).unwrap();
         let end = report.worst["end_difference"].value;
         assert!(report.failures.is_empty() && end < 1e-4, "{seed}: {end:e}");

@@ -9,6 +9,7 @@ pub use impactcheck_physics::kinds::general_impact::*;
 use super::{ClosedForm, Feature, Form, Starter, Use};
 use crate::error::Result;
 use crate::scene::{Model, Scene};
+use std::path::Path;
 
 impl super::Kind for Kind {
     fn serves(&self, purpose: Use) -> bool {
@@ -23,16 +24,8 @@ impl super::Kind for Kind {
         &features::FEATURES
     }
 
-    fn has_mesh(&self) -> bool {
-        false
-    }
-
-    fn has_reference(&self) -> bool {
-        false
-    }
-
-    fn is_resumable(&self, _: &Scene) -> bool {
-        false
+    fn body_file<'a>(&self, scene: &'a Scene) -> Option<&'a Path> {
+        Some(&scene.general_impact().ok()?.body()?.file)
     }
 
     fn closed_forms(&self, scene: &Scene) -> Result<Vec<ClosedForm>> {

@@ -61,7 +61,7 @@ fn bars(row: &QuantityBudget, open: Option<f64>) -> Vec<BudgetBar> {
 pub(crate) fn budget_figure(rows: &[QuantityBudget], open: &BTreeMap<&str, f64>) -> Markup {
     let names: Vec<String> = rows.first().map_or_else(Vec::new, |row| {
         let causes = row.parts.iter().map(|part| cause_name(&part.cause));
-        std::iter::once("model B − reference".to_owned())
+        std::iter::once(format!("model {} − reference", row.model))
             .chain(causes)
             .chain(["remainder and its bound".into()])
             .chain((!open.is_empty()).then(|| "2 u_val, inputs included".into()))
@@ -82,7 +82,7 @@ pub(crate) fn budget_figure(rows: &[QuantityBudget], open: &BTreeMap<&str, f64>)
         let left = LEFT + panel as f64 * (width + GAP);
         left + MARGIN + (width - 2.0 * MARGIN) * (value - low) / span
     };
-    let title = "Error budget: what each simplification adds to model B less reference";
+    let title = "Error budget: what each simplification adds to model less reference";
     Svg::new(title, [WIDTH, bottom + 6.0], Theme::Inline).around(&html! {
         @for (k, name) in names.iter().enumerate() {
             @let y = TOP + ROW * k as f64;

@@ -11,7 +11,7 @@ mod scene;
 mod soundness;
 
 pub use body::{Body, BodyPlace, MeshRequest, Mesher, content, set_mesher};
-pub use model::difference_from_hertz;
+pub use model::{Neighbours, OF_COARSER, difference_from_hertz, neighbours};
 pub use results::{CURVES, ImpactQuantities};
 pub use scene::{GeneralImpact, Struck, Wall};
 

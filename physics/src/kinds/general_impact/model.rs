@@ -25,7 +25,7 @@ use std::time::Instant;
 const LOW_ACCURACY: f64 = 1e-6;
 /// Error of a mesh over the change from one with elements twice as large: 1/(2^p - 1) with the order p = 1.6. On nine meshes of a plate,
 /// whose edge is singular, p was 1.8 to 3.3: the error is rather stated too large.
-const OF_COARSER: f64 = 0.5;
+pub const OF_COARSER: f64 = 0.5;
 /// Quantities whose change is the error by modes or mesh.
 const COMPARED: [&str; 3] = ["efficiency", "outer_force_peak", "inner_force_peak"];
 /// Change of the force peak by it from which on there is a warning.
@@ -174,10 +174,7 @@ impl ContactModel {
     /// Estimated error by what the model omits: higher modes of an elastic body, found with fewer of them, or how spheres deform.
     fn truncation(&self) -> Option<f64> {
         match &self.between {
-            Some(between) => {
-                let fewer = self.system.lowest(self.system.modes.saturating_sub(between.fewer));
-                self.change(&self.system, &fewer)
-            }
+            Some(between) => self.change(&self.system, &self.with_fewer_modes(between)),
             None => Some(self.omitted_flexibility()),
         }
     }
@@ -185,11 +182,7 @@ impl ContactModel {
     /// Largest difference between two systems of the scene of efficiency (without an inner body: restitution, absolute) and force peaks,
     /// relative; `None` if one of them has no result, or one in contact.
     fn change(&self, own: &System, other: &System) -> Option<f64> {
-        let run = |system: &System| {
-            let result = integrate(system, None, &self.options(LOW_ACCURACY)).ok()?;
-            (result.stop != StopReason::Cut).then(|| self.table(&result))
-        };
-        let (own, other) = (run(own)?, run(other)?);
+        let (own, other) = (self.roughly(own)?, self.roughly(other)?);
         let both = |name: &str| own.value(name).zip(other.value(name));
         let relative = |name: &&str| {
             both(name).filter(|(own, _)| *own != 0.0).map(|(own, other)| (other / own - 1.0).abs())
@@ -197,6 +190,17 @@ impl ContactModel {
         let rebound = both("outer_restitution").filter(|_| self.setup.inner.is_none());
         let rebound = rebound.map(|(own, other)| (other - own).abs());
         COMPARED.iter().filter_map(relative).chain(rebound).max_by(f64::total_cmp)
+    }
+
+    /// Results of `system`, one of the scene; `None` if there are none, or one in contact.
+    fn roughly(&self, system: &System) -> Option<Table> {
+        let result = integrate(system, None, &self.options(LOW_ACCURACY)).ok()?;
+        (result.stop != StopReason::Cut).then(|| self.table(&result))
+    }
+
+    /// The scene's system with fewer modes, as the error for want of modes is found.
+    fn with_fewer_modes(&self, between: &Between) -> System {
+        self.system.lowest(self.system.modes.saturating_sub(between.fewer))
     }
 
     /// Relative change of the force peak by the flexibility of spheres beyond that of Hertz's half-spaces, which the model omits.
@@ -315,6 +319,32 @@ fn with_modes(system: System, modes: Option<usize>) -> Result<System> {
         Some(modes) => Ok(system.lowest(modes)),
         None => Ok(system),
     }
+}
+
+/// Results of model C of a scene with an elastic body, and what they would be with another basis and mesh; those not determined are `None`.
+#[derive(Debug)]
+pub struct Neighbours {
+    /// As the model has them.
+    pub own: Option<Table>,
+    /// With fewer modes.
+    pub fewer_modes: Option<Table>,
+    /// On a mesh with elements twice as large, if there is one.
+    pub coarser_mesh: Option<Table>,
+}
+
+/// What modes and mesh change in the results of `scene`; `None` if nothing elastic lies between the bodies.
+///
+/// # Errors
+/// Those of the model.
+pub fn neighbours(scene: &Scene) -> Result<Option<Neighbours>> {
+    let model = ContactModel::new(scene, None)?;
+    let Some(between) = &model.between else { return Ok(None) };
+    let coarse = between.coarse.as_ref().map(|coarse| coarse.lowest(model.system.modes));
+    Ok(Some(Neighbours {
+        own: model.roughly(&model.system),
+        fewer_modes: model.roughly(&model.with_fewer_modes(between)),
+        coarser_mesh: coarse.and_then(|coarse| model.roughly(&coarse)),
+    }))
 }
 
 /// Relative difference of the force peak of `scene`, with elastic bodies, from Hertz's closed form; `None` for a bender or stack, which

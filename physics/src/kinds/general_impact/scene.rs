@@ -4,7 +4,7 @@ use super::NAME;
 use super::body::{Body, find_file, place};
 use super::soundness::key_collisions;
 use crate::error::Result;
-use crate::kinds::body_keys::{INNER, OUTER, SERIES};
+use crate::kinds::body_keys::{CONTACT_ELEMENTS, INNER, OUTER, SERIES, SOLID_ELEMENTS};
 use crate::kinds::body_reading;
 use crate::kinds::plate_impact::{PLATE, read_plate};
 use crate::material::Material;
@@ -209,6 +209,12 @@ static REDUCED: [Field; 2] = [
     ),
 ];
 
+static REFERENCE: [Field; 1] = [optional(
+    "elements_per_contact_radius",
+    pure(CONTACT_ELEMENTS),
+    "Elements across the contact radius at `paper` resolution; absent = 3",
+)];
+
 impl Language for super::Kind {
     fn keys(&self) -> Vec<Field> {
         vec![
@@ -239,6 +245,7 @@ impl Language for super::Kind {
                 "Repeated impacts, each with the plastic indentations of those before",
             ),
             optional("reduced", Kind::Table(&REDUCED), "Settings of the reduced model"),
+            optional("reference", Kind::Table(&REFERENCE), "Settings of the finite-element reference"),
             optional(
                 "uncertainty",
                 Kind::Uncertainty,
@@ -282,7 +289,14 @@ impl Language for super::Kind {
         let outer = body_reading::outer(&outer_table, materials)?;
         let series = body_reading::series(root)?;
         let setup = GeneralImpact { outer, struck, inner, series };
-        Ok((Setup::new(setup), ReferenceSettings::of(Geometry::Axisymmetric)))
+        let settings = root.optional_table("reference")?;
+        let elements = settings
+            .map_or(Ok(SOLID_ELEMENTS), |s| s.number_or("elements_per_contact_radius", SOLID_ELEMENTS))?;
+        let reference = ReferenceSettings {
+            elements_per_contact_radius: Some(elements),
+            ..ReferenceSettings::of(Geometry::Solid)
+        };
+        Ok((Setup::new(setup), reference))
     }
 }
 

@@ -8,11 +8,11 @@ use crate::report::page::html::{detailed, scrolled};
 use crate::report::page::prose::prose;
 use maud::{Markup, html};
 
-const EXPLANATION: &str = "What each simplification of model B adds to its difference from the reference. The \
+const EXPLANATION: &str = "What each simplification of the model adds to its difference from the reference. The \
     simplifications are removed one after another, from top to bottom; another order gives other parts. Parts and \
-    remainder add up to the difference. The remainder is model C with most modes minus the reference. It is explained \
-    if it lies within its bound: the uncertainty (95 %) of the reference and the uncertainty of model C, added as \
-    independent. Reported, not gated.";
+    remainder add up to the difference. The remainder is the best model C, with most modes and the finest mesh, minus the \
+    reference. It is explained if it lies within its bound: the uncertainty (95 %) of the reference and the uncertainty of \
+    model C, added as independent. Reported, not gated.";
 
 /// Section of the page; nothing if there is no budget.
 pub(crate) fn budget_html(comparison: &SceneComparison) -> Markup {
@@ -32,7 +32,7 @@ pub(crate) fn budget_html(comparison: &SceneComparison) -> Markup {
                 @for row in rows { th scope="col" { (words(&row.quantity)) } }
             } }
             tbody {
-                tr { th scope="row" { "model B − reference" } @for row in rows { (cell(row, "difference", row.difference, None)) } }
+                tr { th scope="row" { "model " (first.model) " − reference" } @for row in rows { (cell(row, "difference", row.difference, None)) } }
                 @for (k, part) in first.parts.iter().enumerate() {
                     tr data-cause=(part.cause) {
                         th scope="row" title=(part.switch) { (cause_name(&part.cause)) }
@@ -99,7 +99,7 @@ pub(crate) fn budget_markdown(rows: &[QuantityBudget]) -> String {
     text += &line("cause", &|row| words(&row.quantity));
     text += &format!("|---|{}\n", "--:|".repeat(rows.len()));
     text += &line("reference", &|row| with_unit(row.reference, scale(row), 5));
-    text += &line("model B − reference", &|row| shown(row, row.difference, None));
+    text += &line(&format!("model {} − reference", first.model), &|row| shown(row, row.difference, None));
     for (k, part) in first.parts.iter().enumerate() {
         let cell = |row: &QuantityBudget| shown(row, row.parts[k].value, Some(row.parts[k].uncertainty));
         text += &line(&cause_name(&part.cause), &cell);

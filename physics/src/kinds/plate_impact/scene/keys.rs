@@ -1,14 +1,12 @@
 //! The keys of a plate impact.
 
-use crate::kinds::body_keys::{INNER, OUTER, SERIES};
+use crate::kinds::body_keys::{CONTACT_ELEMENTS, INNER, OUTER, SERIES};
 use crate::scene::flight::{FLIGHT, PLATE_FLIGHT};
 use crate::scene::grammar::{
     Bound, Field, Kind, MODELS, choice, one_way, only, optional, positive, pure, required,
 };
 use crate::scene::quantity::Dimension;
 
-/// Smallest and largest number of elements across the contact radius.
-const ELEMENTS: Bound = Bound { low: Some((2.0, true)), high: Some((64.0, true)) };
 const FRACTION: Bound = Bound { low: Some((0.0, false)), high: Some((1.0, true)) };
 
 /// The keys that only a plate impact has.
@@ -93,7 +91,7 @@ static REFERENCE: [Field; 4] = [
     ),
     optional(
         "elements_per_contact_radius",
-        pure(ELEMENTS),
+        pure(CONTACT_ELEMENTS),
         "Elements across the contact radius at `paper` resolution; absent = 12, with solid geometry 3",
     ),
     only(
@@ -116,5 +114,3 @@ static REFERENCE: [Field; 4] = [
 
 /// Default of `reference.elements_per_contact_radius` with axisymmetric geometry (bilinear elements).
 pub(super) const DEFAULT_ELEMENTS: f64 = 12.0;
-/// The same with solid geometry (quadratic elements).
-pub(super) const DEFAULT_SOLID_ELEMENTS: f64 = 3.0;

@@ -1,8 +1,9 @@
 //! From the checked values of a plate impact to its types.
 
 use super::PlateImpact;
-use super::keys::{DEFAULT_ELEMENTS, DEFAULT_SOLID_ELEMENTS};
+use super::keys::DEFAULT_ELEMENTS;
 use crate::Result;
+use crate::kinds::body_keys::SOLID_ELEMENTS;
 use crate::kinds::body_reading;
 use crate::scene::material::material;
 use crate::scene::read::refused;
@@ -86,7 +87,7 @@ pub(super) fn reference(settings: Option<Node>, centred: bool) -> Result<Referen
         None if !centred => Geometry::Solid,
         _ => Geometry::Axisymmetric,
     };
-    let default = if geometry == Geometry::Solid { DEFAULT_SOLID_ELEMENTS } else { DEFAULT_ELEMENTS };
+    let default = if geometry == Geometry::Solid { SOLID_ELEMENTS } else { DEFAULT_ELEMENTS };
     let rigid = match settings.0.get("rigid") {
         Some(Checked::Text(word)) if word == "outer" => Some(Rigid::Outer),
         Some(Checked::Text(word)) if word == "inner" => Some(Rigid::Inner),

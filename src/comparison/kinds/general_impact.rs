@@ -1,0 +1,86 @@
+//! Error budget of model C with an elastic body: what its basis and its mesh add to the difference from the reference.
+//!
+//! Elements twice as large show what the mesh does to each quantity, and a basis with one block of vectors less bounds what is left out of
+//! it. What remains is the contact law, the half-space's flexibility and the spheres' own waves, and what the reference does not know.
+
+use crate::comparison::Verdict;
+use crate::comparison::budget::{Part, QuantityBudget};
+use crate::error::Result;
+use crate::kinds::general_impact::{Neighbours, OF_COARSER, neighbours};
+use crate::result::{Outcome, Summary, Table};
+use crate::scene::Scene;
+
+/// The quantities of the budget.
+const QUANTITIES: [&str; 5] =
+    ["efficiency", "outer_restitution", "outer_force_peak", "inner_force_peak", "outer_contact_end"];
+
+/// The budget of `scene` if model C is among the results `reduced` and a body with modes lies between; else empty.
+///
+/// # Errors
+/// Those of the model.
+pub(in crate::comparison) fn of_results(
+    scene: &Scene,
+    reference: &Summary,
+    reduced: &[Outcome],
+) -> Result<Vec<QuantityBudget>> {
+    let mut summaries = reduced.iter().map(|outcome| &outcome.summary);
+    let Some(c) = summaries.find(|summary| summary.model.as_deref() == Some("C")) else {
+        return Ok(Vec::new());
+    };
+    let Some(found) = neighbours(scene)? else { return Ok(Vec::new()) };
+    Ok(QUANTITIES.iter().filter_map(|quantity| budget(quantity, &found, c, reference)).collect())
+}
+
+/// The budget of one quantity; `None` if it is not determined.
+fn budget(
+    quantity: &str,
+    found: &Neighbours,
+    model: &Summary,
+    reference: &Summary,
+) -> Option<QuantityBudget> {
+    let value = model.value(quantity)?;
+    let theirs = reference.value(quantity)?;
+    let own = found.own.as_ref()?.value(quantity)?;
+    let change = |other: &Option<Table>| Some(other.as_ref()?.value(quantity)? - own);
+    let modes = change(&found.fewer_modes)?.abs();
+    // on a coarser mesh the error is 2^p times as large
+    let mesh = OF_COARSER * change(&found.coarser_mesh).unwrap_or(0.0);
+    let part = |cause: &str, switch: &str, value: f64, uncertainty: f64| Part {
+        cause: cause.into(),
+        switch: switch.into(),
+        value,
+        uncertainty,
+    };
+    let parts = vec![
+        part(
+            "mode_truncation",
+            "the basis as it is → one block of vectors less, whose change is the uncertainty",
+            0.0,
+            modes,
+        ),
+        part(
+            "mesh_of_the_body",
+            "the body's mesh → extrapolated from it and one with elements twice as large",
+            mesh,
+            mesh.abs(),
+        ),
+    ];
+    let difference = value - theirs;
+    let remainder = difference - mesh;
+    let reference_uncertainty = reference.band(quantity);
+    let model_uncertainty = modes.hypot(mesh);
+    let bound = reference_uncertainty.unwrap_or(0.0).hypot(model_uncertainty);
+    Some(QuantityBudget {
+        quantity: quantity.into(),
+        model: "C".into(),
+        unit: reference.quantities.get(quantity).map_or("", |quantity| quantity.unit).into(),
+        reference: theirs,
+        difference,
+        parts,
+        remainder,
+        reference_uncertainty,
+        model_uncertainty,
+        bound,
+        explained: Verdict::of(remainder.abs() <= bound),
+    })
+}
