@@ -15,6 +15,7 @@ mod import;
 mod kinds;
 mod python;
 mod section;
+mod solid_stress;
 mod solve;
 mod store;
 mod trial;
@@ -31,6 +32,7 @@ pub use import::{Imported, read_import};
 pub use kinds::*;
 pub use python::{prefer_python, python};
 pub use section::MeshSection;
+pub use solid_stress::SolidStress;
 pub use solve::{Wish, solve, solve_with};
 pub use store::{Lookup, Store};
 

@@ -4,7 +4,7 @@ use crate::ci::acceptance::Acceptance;
 use crate::ci::trend::Trend;
 use crate::coverage::Coverage;
 use crate::project::project_root;
-use crate::reference::{CurveBands, Dents, FieldMesh, MeshSection, Stored};
+use crate::reference::{CurveBands, Dents, FieldMesh, MeshSection, SolidStress, Stored};
 use crate::report::kinds;
 use crate::result::History;
 use crate::scene::Scene;
@@ -27,6 +27,8 @@ pub struct Attachments {
     pub section: Option<MeshSection>,
     /// Its stress at the instant (s) kept that is nearest to the largest force.
     pub section_stress: Option<(f64, MeshSection)>,
+    /// Stress in the struck body of a solid reference at the instant (s) kept that is nearest to the largest force.
+    pub solid_stress: Option<(f64, SolidStress)>,
     /// The reference's series of fields, which ParaView plays.
     pub fields: Option<PathBuf>,
     /// What the reduced models have cost, in their order; of models that share a mesh with the reference.

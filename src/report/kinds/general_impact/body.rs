@@ -3,7 +3,9 @@
 use crate::body::solid::{BodyView, ContactInfo};
 use crate::format::{prefixed, with_unit};
 use crate::kinds::general_impact::body_view;
+use crate::reference::SolidStress;
 use crate::report::page::page_data::embedded;
+use crate::result::Summary;
 use crate::scene::Scene;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -13,15 +15,21 @@ use serde_json::{Value, json};
 const SCRIPT: &str = include_str!("../../page/assets/body_view.js");
 const STYLE: &str = include_str!("../../page/assets/body_view.css");
 
-/// The body of `scene` with its stress under the force peak `peak` in N, or 1 N; nothing without a body from a mesh.
-pub(crate) fn body_figure(scene: &Scene, peak: Option<f64>) -> Markup {
+/// The body of `scene` with its stress under the force peak of the result `model`, or 1 N, and with that of the reference at an instant in s;
+/// nothing without a body from a mesh.
+pub(crate) fn body_figure(
+    scene: &Scene,
+    model: Option<&Summary>,
+    reference: Option<&(f64, SolidStress)>,
+) -> Markup {
+    let peak = model.and_then(|model| model.value("outer_force_peak"));
     match body_view(scene) {
         Ok(None) => html! {},
         Err(error) => html! { p.note { "The body can't be shown: " (error) } },
         Ok(Some((view, contacts))) => html! {
             style { (PreEscaped(STYLE)) }
             figure.body-view {
-                script type="application/json" { (PreEscaped(embedded(&document(scene, &view, &contacts, peak)))) }
+                script type="application/json" { (PreEscaped(embedded(&document(scene, &view, &contacts, peak, reference)))) }
                 noscript { p.note { "The body in 3D needs JavaScript." } }
             }
             script type="text/javascript" { (PreEscaped(SCRIPT)) }
@@ -30,7 +38,13 @@ pub(crate) fn body_figure(scene: &Scene, peak: Option<f64>) -> Markup {
 }
 
 /// What the script reads.
-fn document(scene: &Scene, view: &BodyView, contacts: &[ContactInfo], peak: Option<f64>) -> Value {
+fn document(
+    scene: &Scene,
+    view: &BodyView,
+    contacts: &[ContactInfo],
+    peak: Option<f64>,
+    reference: Option<&(f64, SolidStress)>,
+) -> Value {
     let low: [f64; 3] =
         std::array::from_fn(|c| view.points.iter().map(|p| p[c]).fold(f64::INFINITY, f64::min));
     let extent = |c: usize| view.points.iter().map(|p| p[c] - low[c]).fold(0.0, f64::max);
@@ -51,6 +65,11 @@ fn document(scene: &Scene, view: &BodyView, contacts: &[ContactInfo], peak: Opti
     let force = peak.map_or("1 N".to_owned(), |peak| with_unit(peak, prefixed("N", peak), 3));
     let under = format!("von Mises stress under a static {force} at the outer contact");
     let mut fields = vec![field(&under, "MPa", &stress)];
+    if let Some((time, stress)) = reference {
+        let at = with_unit(*time, prefixed("s", *time), 3);
+        let stress: Vec<f64> = stress.at(&view.points).iter().map(|stress| stress * 1e-6).collect();
+        fields.insert(0, field(&format!("von Mises stress of the reference at {at}"), "MPa", &stress));
+    }
     for (k, (frequency, shape)) in view.modes.iter().enumerate() {
         let name = format!("mode {}, {}", k + 1, with_unit(*frequency, prefixed("Hz", *frequency), 3));
         let lengths: Vec<f64> = shape.iter().map(|u| u.iter().map(|c| c * c).sum::<f64>().sqrt()).collect();

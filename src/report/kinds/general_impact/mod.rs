@@ -4,7 +4,9 @@ mod body;
 mod picture;
 
 use super::Presentation;
+use crate::reference::Stored;
 use crate::report::SceneReport;
+use crate::report::attachments::{Attachments, instant_of_peak};
 use crate::report::figure::geometry::PanelOf;
 use crate::report::figure::scene::MOTION;
 use crate::report::page::section::{self, Section};
@@ -47,6 +49,11 @@ impl Presentation for Direct {
          side), and the contact forces, positive in compression."
     }
 
+    fn attachments(&self, stored: &Stored) -> Attachments {
+        let peak = instant_of_peak(&stored.outcome.history, "outer_force");
+        Attachments { solid_stress: stored.solid_stress_near(peak).ok().flatten(), ..Attachments::default() }
+    }
+
     fn scene_drawing(&self, report: &SceneReport) -> Markup {
         report.scene.general_impact().map_or_else(|_| html! {}, picture::picture)
     }
@@ -56,13 +63,14 @@ impl Presentation for Direct {
     }
 
     fn body(&self, scene: &Scene, summary: Option<&Summary>) -> Markup {
-        body::body_figure(scene, summary.and_then(|summary| summary.value("outer_force_peak")))
+        body::body_figure(scene, summary, None)
     }
 
     fn sections(&self, report: &SceneReport) -> Vec<Section> {
         let model = report.comparison.models.first().map(|model| &model.summary);
+        let body = body::body_figure(report.scene, model, report.attachments.solid_stress.as_ref());
         vec![
-            Section::new("body", "The body", self.body(report.scene, model)),
+            Section::new("body", "The body", body),
             Section::new("impacts", "Impacts in series", section::impacts::impacts_html(report)),
             Section::new("budget", "Error budget", section::budget::budget_html(&report.comparison)),
         ]
