@@ -33,6 +33,7 @@ def _parser() -> argparse.ArgumentParser:
     solve.add_argument(
         "--replace", action="store_true", help="even if OUT holds a solution of another scene"
     )
+    solve.add_argument("--body", type=Path, metavar="FILE", help="shape of the scene's body")
     solve.add_argument("--resolution", choices=RESOLUTION_NAMES, default="paper")
     solve.add_argument(
         "--solver",

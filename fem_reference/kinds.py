@@ -14,7 +14,7 @@ from .common.decode import member, one_of
 KINDS = {
     "plate-impact": "plate_impact",
     "seal-seat": "seal_seat",
-    "impact": "body",
+    "impact": "general_impact",
 }
 """Folder of each kind. Its module `command` has a dictionary ``COMMANDS`` by name, and may have
 one of ``STUDIES``; it imports late what these need."""

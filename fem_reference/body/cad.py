@@ -19,6 +19,7 @@ from .curvature import Curvature, of_face
 from .part import TRIANGLE6, UNIT, Part, coarse_skin, load, on_face, unmeshable
 from .scene import BodyScene, Place, place
 from .sizing import (
+    CIRCLES,
     CONTACT_SHARE,
     EDGE_SHARE,
     FIXED_EDGE_SHARE,
@@ -47,7 +48,7 @@ AT_CURVE = 0.25
 
 
 @dataclass(frozen=True)
-class _Strike:
+class Strike:
     """A contact on the part, in gmsh's unit."""
 
     face: int
@@ -78,19 +79,15 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     Raises:
         SceneError: the file, a name, a point or a size is not sound, or gmsh cannot mesh it.
     """
-    part = load(path, scene.body.unit)
-    skin, owner = coarse_skin(part)
-    found = walls(skin)
-    strikes = {
-        name: _strike(part, skin, owner, found, place(contact.at, f"{name}.at"), f"{name}.at")
-        for name, contact in scene.contacts().items()
-    }
-    points = {name: _point(strike) for name, strike in strikes.items()}
-    contacts = [ContactSize(points[name], each.place, each.size) for name, each in strikes.items()]
-    largest = scene.body.element_size / UNIT if scene.body.element_size else None
-    sizes = chosen_sizes(found, contacts, largest)
-    faces = _fixed_faces(scene, part, skin, owner, sizes)
-    edges = _fixed_edges(faces, skin, owner, sizes)
+    made = struck_part(scene, path)
+    part, strikes = made.part, made.strikes
+    contacts = [
+        ContactSize(made.points[name], each.place, each.size, CIRCLES * each.size)
+        for name, each in strikes.items()
+    ]
+    sizes = chosen_sizes(made.walls, contacts, largest_element(scene))
+    faces = made.fixed_faces(scene, sizes)
+    edges = made.fixed_edges(faces, sizes)
     for algorithm in (DELAUNAY, HXT):
         _generate(part, sizes, factor, edges, algorithm)
         body, number = _body(part)
@@ -108,7 +105,56 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     )
 
 
-def _strike(part: Part, skin: Skin, owner: Ints, found: Walls, at: Place, path: str) -> _Strike:
+def largest_element(scene: BodyScene) -> float | None:
+    """That the scene asks for, in gmsh's unit."""
+    return scene.body.element_size / UNIT if scene.body.element_size else None
+
+
+@dataclass(frozen=True)
+class StruckPart:
+    """A CAD part in gmsh with points at its contacts, ready to be meshed."""
+
+    part: Part
+    skin: Skin
+    """First, coarse mesh of the surface, in gmsh's unit."""
+    owner: Ints
+    """Face of each of its triangles."""
+    walls: Walls
+    strikes: dict[str, Strike]
+    points: dict[str, int]
+    """Tag of gmsh's point at each contact."""
+
+    def fixed_faces(self, scene: BodyScene, sizes: Sizes) -> list[int]:
+        """Tags of the faces that are fixed.
+
+        Raises:
+            SceneError: a name is missing, or a point is off the surface.
+        """
+        return _fixed_faces(scene, self.part, self.skin, self.owner, sizes)
+
+    def fixed_edges(self, faces: list[int], sizes: Sizes) -> list[tuple[int, float]]:
+        """Sharp curves around fixed faces, and the size along each."""
+        return _fixed_edges(faces, self.skin, self.owner, sizes)
+
+
+def struck_part(scene: BodyScene, path: Path) -> StruckPart:
+    """Read a CAD part and find its contacts; gmsh runs.
+
+    Raises:
+        SceneError: the file, a name or a point is not sound.
+    """
+    part = load(path, scene.body.unit)
+    skin, owner = coarse_skin(part)
+    found = walls(skin)
+    strikes = {
+        name: _strike(part, skin, owner, found, place(contact.at, f"{name}.at"), f"{name}.at")
+        for name, contact in scene.contacts().items()
+    }
+    points = {name: _point(strike) for name, strike in strikes.items()}
+    return StruckPart(part, skin, owner, found, strikes, points)
+
+
+def _strike(part: Part, skin: Skin, owner: Ints, found: Walls, at: Place, path: str) -> Strike:
     face, snapped, meant = on_face(part, skin, owner, at, path)
     near = skin.nearest(snapped, owner == face)
     curvature = of_face(face, snapped, near.normal, UNIT)
@@ -129,7 +175,7 @@ def _strike(part: Part, skin: Skin, owner: Ints, found: Walls, at: Place, path: 
                 f"{wall * UNIT:.3g} m): move it away from the edge"
             )
     moved = _at_curve(face, snapped, size)
-    return _Strike(face, moved, float(np.linalg.norm(moved - meant)), normal, curvature, size)
+    return Strike(face, moved, float(np.linalg.norm(moved - meant)), normal, curvature, size)
 
 
 def _at_curve(face: int, snapped: Floats, size: float) -> Floats:
@@ -143,7 +189,7 @@ def _at_curve(face: int, snapped: Floats, size: float) -> Floats:
     return snapped
 
 
-def _point(strike: _Strike) -> int:
+def _point(strike: Strike) -> int:
     """Tag of a point of gmsh's model at a contact, where a node will be."""
     tolerance = 1e-6 * strike.size
     for _, point in gmsh.model.getEntities(0):
@@ -252,7 +298,7 @@ def _fixed_nodes(body: Body, faces: list[int], number: Ints) -> np.ndarray[Any, 
     return fixed
 
 
-def _stated(body: Body, strike: _Strike) -> dict[str, Any]:
+def _stated(body: Body, strike: Strike) -> dict[str, Any]:
     """The contact as the description of the mesh has it, at the node made for it."""
     found = body.skin.nearest(strike.place * UNIT)
     node = body.skin.faces[found.face, :3]

@@ -52,23 +52,12 @@ def remeshed(
             f"{name} with elements {factor:g} times as large has the volume {found:.6g} m^3 "
             f"instead of {own:.6g}: it is too coarse for that"
         )
-    return made, _moved_nodes(body, fixed, made), _moved_contacts(made, contacts)
+    return made, moved_nodes(body, fixed, made), _moved_contacts(made, contacts)
 
 
 def _generated(body: Body, factor: float, scale: float) -> tuple[Floats, Ints]:
     """Points, in units of the body's longest side, and tetrahedra."""
-    triangles = _flat(body.skin) * scale
-    places, triangle_nodes = np.unique(
-        np.round(triangles.reshape(-1, 3), 12), axis=0, return_inverse=True
-    )
-    surface = gmsh.model.addDiscreteEntity(2)
-    gmsh.model.mesh.addNodes(2, surface, np.arange(1, len(places) + 1), places.ravel())
-    gmsh.model.mesh.addElementsByType(surface, 2, [], triangle_nodes.ravel() + 1)
-    gmsh.model.mesh.classifySurfaces(FEATURE_ANGLE, True, True, math.pi)
-    gmsh.model.mesh.createGeometry()
-    faces = [tag for _, tag in gmsh.model.getEntities(2)]
-    gmsh.model.geo.addVolume([gmsh.model.geo.addSurfaceLoop(faces)])
-    gmsh.model.geo.synchronize()
+    classify(body.skin, scale)
     for key, value in (("Algorithm3D", 1), ("ElementOrder", 2), ("HighOrderOptimize", 1)):
         gmsh.option.setNumber(f"Mesh.{key}", value)
     for source in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
@@ -91,6 +80,25 @@ def _generated(body: Body, factor: float, scale: float) -> tuple[Floats, Ints]:
     cells = at[flat.astype(np.int64)].reshape(-1, 10)[:, list(GMSH_NODES["tetra10"])]
     used, number = np.unique(cells, return_inverse=True)
     return coordinates.reshape(-1, 3)[used], number.reshape(cells.shape)
+
+
+def classify(skin: Skin, scale: float) -> None:
+    """Make a solid of gmsh's of a surface: smooth faces between sharp edges.
+
+    Args:
+        skin: the surface.
+        scale: of gmsh's unit on that of the surface.
+    """
+    triangles = _flat(skin) * scale
+    places, nodes = np.unique(np.round(triangles.reshape(-1, 3), 12), axis=0, return_inverse=True)
+    surface = gmsh.model.addDiscreteEntity(2)
+    gmsh.model.mesh.addNodes(2, surface, np.arange(1, len(places) + 1), places.ravel())
+    gmsh.model.mesh.addElementsByType(surface, 2, [], nodes.ravel() + 1)
+    gmsh.model.mesh.classifySurfaces(FEATURE_ANGLE, True, True, math.pi)
+    gmsh.model.mesh.createGeometry()
+    faces = [tag for _, tag in gmsh.model.getEntities(2)]
+    gmsh.model.geo.addVolume([gmsh.model.geo.addSurfaceLoop(faces)])
+    gmsh.model.geo.synchronize()
 
 
 def _flat(skin: Skin) -> Floats:
@@ -130,7 +138,7 @@ def _moved_groups(body: Body, points: Floats, cells: Ints) -> list[Group]:
     ]
 
 
-def _moved_nodes(body: Body, fixed: Mask, made: Body) -> Mask:
+def moved_nodes(body: Body, fixed: Mask, made: Body) -> Mask:
     """Nodes of the triangles whose nearest old triangle is fixed, or next to single fixed nodes."""
     moved = np.zeros(made.points.shape[0], dtype=bool)
     if not fixed.any():

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import gmsh
@@ -73,6 +73,8 @@ class ContactSize:
     """Tag of gmsh's point there."""
     place: Floats
     size: float
+    zone: float
+    """Radius of the zone in which they are that small."""
 
 
 @dataclass(frozen=True)
@@ -182,21 +184,40 @@ def set_sizes(
         fixed_edges: tags of sharp curves around fixed faces, and the size along each.
         folder: for the grid's file, which has to stay until the mesh is made.
     """
-    fields = [grid_field(folder / "sizes.txt", sizes.places, lambda at: factor * sizes.at(at))]
-    for contact in sizes.contacts:
+    contacts = [replace(c, size=factor * c.size, zone=factor * c.zone) for c in sizes.contacts]
+    edges = [(curve, factor * size) for curve, size in fixed_edges]
+    grid = grid_field(folder / "sizes.txt", sizes.places, lambda at: factor * sizes.at(at))
+    set_fields([grid], contacts, edges, max(PER_CIRCLE / factor, LEAST_PER_CIRCLE))
+
+
+def set_fields(
+    fields: list[int],
+    contacts: Sequence[ContactSize],
+    edges: Sequence[tuple[int, float]] = (),
+    per_circle: float = 0.0,
+    growth: float = GROWTH,
+) -> None:
+    """Make the least of several sizes gmsh's background field.
+
+    Args:
+        fields: of gmsh.
+        contacts: elements at them.
+        edges: tags of curves, and the size along each.
+        per_circle: elements around a circle, at least; 0: any number.
+        growth: of the size per distance from contacts and edges.
+    """
+    for contact in contacts:
         distance = gmsh.model.mesh.field.add("Distance")
         gmsh.model.mesh.field.setNumbers(distance, "PointsList", [contact.point])
-        size = factor * contact.size
-        fields.append(_threshold(distance, size, CIRCLES * size))
-    for curve, size in fixed_edges:
+        fields.append(_threshold(distance, contact.size, contact.zone, growth))
+    for curve, size in edges:
         distance = gmsh.model.mesh.field.add("Distance")
         gmsh.model.mesh.field.setNumbers(distance, "CurvesList", [curve])
         gmsh.model.mesh.field.setNumber(distance, "Sampling", 200)
-        fields.append(_threshold(distance, factor * size, 0.0))
+        fields.append(_threshold(distance, size, 0.0, growth))
     least = gmsh.model.mesh.field.add("Min")
     gmsh.model.mesh.field.setNumbers(least, "FieldsList", fields)
     gmsh.model.mesh.field.setAsBackgroundMesh(least)
-    per_circle = max(PER_CIRCLE / factor, LEAST_PER_CIRCLE)
     for source, value in (
         ("ExtendFromBoundary", 0),
         ("FromPoints", 0),
@@ -205,7 +226,7 @@ def set_sizes(
         gmsh.option.setNumber(f"Mesh.MeshSize{source}", value)
 
 
-def _threshold(distance: int, size: float, constant: float) -> int:
+def _threshold(distance: int, size: float, constant: float, growth: float) -> int:
     field = gmsh.model.mesh.field.add("Threshold")
     far = 1e3 * size
     for key, value in (
@@ -213,7 +234,7 @@ def _threshold(distance: int, size: float, constant: float) -> int:
         ("SizeMin", size),
         ("SizeMax", far),
         ("DistMin", constant),
-        ("DistMax", constant + (far - size) / GROWTH),
+        ("DistMax", constant + (far - size) / growth),
     ):
         gmsh.model.mesh.field.setNumber(field, key, value)
     return int(field)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 from scipy.linalg import eigh_tridiagonal
@@ -147,17 +148,37 @@ class RigidMotions:
         return force
 
 
+class Floating(Protocol):
+    """Rigid motions of a body."""
+
+    @property
+    def motions(self) -> list[tuple[Floats, float]]:
+        """Each with its modal mass."""
+
+    def out_of_motion(self, x: Floats) -> Floats:
+        """A motion without them."""
+
+    def out_of_force(self, force: Floats) -> Floats:
+        """A force without what accelerates them."""
+
+
 def first_frequency(
-    loop: Loop, body: int, axis: int = 2, tolerance: float = 1e-6, start: Floats | None = None
+    loop: Loop,
+    body: int,
+    axis: int = 2,
+    tolerance: float = 1e-6,
+    start: Floats | None = None,
+    floating: Floating | None = None,
 ) -> float:
     """Lowest eigenfrequency of a body, Hz, by inverse iteration from the motion along ``axis``.
 
     A body that is free along ``axis`` keeps that motion out of the iteration. ``start`` (3 n,) is
-    another motion to begin with, where the lowest mode may not contain that along ``axis``.
+    another motion to begin with, where the lowest mode may not contain that along ``axis``;
+    ``floating`` the rigid motions, where there may be others than a force along it causes.
     """
     free = free_components(loop, body)
     mass = np.repeat(loop.mass, 3)
-    floating = RigidMotions(loop, body, axis)
+    floating = floating or RigidMotions(loop, body, axis)
     x = rigid = body_translation(loop, body, axis)
     orthogonal, balanced = floating.out_of_motion, floating.out_of_force
     if floating.motions:

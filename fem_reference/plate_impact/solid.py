@@ -19,6 +19,7 @@ from ..explicit.loop import Loop
 from ..explicit.spectrum import body_translation, first_frequency
 from ..solid.elasticity import write_fields
 from ..solid.mesh import edge_lengths, mesh_report
+from ..solid.meshing import rounded
 from ..solid.stepping import Stepped, stepped
 from .estimate import (
     ACCEPTED_SHARE,
@@ -38,9 +39,6 @@ from .solid_motion import SolidMotion, integrate_solid
 
 REVISION = 6
 """Counts changes of the method that make older checkpoints useless."""
-
-RADIUS_STEP = 1.04
-"""Ratio of neighbouring contact radii for which a mesh is made again."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,16 +127,6 @@ def _elements_per_radius(scene: Scene, plate: PlateModel, run: Run) -> tuple[flo
 def method(scene: Scene) -> list[Any]:
     """What kept states and results depend on, meshes and step apart."""
     return [REVISION, scene.raw]
-
-
-def rounded(radius: float) -> float:
-    """The nearest of a series of radii, `RADIUS_STEP` apart.
-
-    An unstructured mesh changes altogether with the last digit of a size, and the radius found
-    differs in its last digits with the number of processes, in its first with the mesh.
-    """
-    step = math.log(RADIUS_STEP)
-    return math.exp(step * round(math.log(radius) / step))
 
 
 def compute(scene: Scene, factor: float, settings: Settings, comm: Any, report: Report) -> Solution:

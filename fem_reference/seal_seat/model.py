@@ -11,6 +11,7 @@ from ..common.errors import SolverError
 from ..explicit.contact import Contact, RigidBody, SphereContact, SurfaceContact, guided
 from ..solid.mesh import TetMesh, surface
 from ..solid.model import ElasticBody, Model, nodal_areas, symmetry_plane
+from ..solid.patch import Patch
 from ..solid.sphere_pairs import sphere_pairs
 from .scene import Ring, SeatScene
 
@@ -26,21 +27,6 @@ SEAT, ELASTIC_SPHERE = 0, 1
 """Numbers of the elastic bodies."""
 LEFT, RIGHT = 0, 1
 """Numbers of the contacts of the cone's flanks with the sphere; the tips' follow."""
-
-
-@dataclass(frozen=True)
-class Patch:
-    """Where a contact can be: its nodes, their areas and normals."""
-
-    nodes: Ints
-    areas: Floats
-    """(n,) m^2"""
-    normals: Floats
-    """(n, 3) unit normals, out of the seat."""
-    reach: float
-    """m"""
-    distances: Floats
-    """(n,) from the ring or from under the tip, m, ascending."""
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,20 @@ DELAUNAY = 1
 """gmsh's classic algorithm. HXT makes slightly better elements, but other ones at every call."""
 
 
+RADIUS_STEP = 1.04
+"""Ratio of neighbouring contact radii for which a mesh is made again."""
+
+
+def rounded(radius: float) -> float:
+    """The nearest of a series of radii, `RADIUS_STEP` apart.
+
+    An unstructured mesh changes altogether with the last digit of a size, and the radius found
+    differs in its last digits with the number of processes, in its first with the mesh.
+    """
+    step = math.log(RADIUS_STEP)
+    return math.exp(step * round(math.log(radius) / step))
+
+
 @dataclass(frozen=True)
 class SizeField:
     """Element size h = min(largest, least + slope * max(0, d - zone)).
@@ -116,6 +130,15 @@ def _mended(name: str, build: Callable[[], None], size: SizeField) -> tuple[Floa
     return generate(name, build, smaller)
 
 
+def generate_part(
+    name: str, build: Callable[[], None], size: SizeField, planes: Sequence[int], length: float
+) -> tuple[Floats, Ints]:
+    """As `generate` without flat elements, points on the planes of symmetry exactly on them."""
+    points, corners = _mended(name, build, size)
+    _snap(points, planes, length)
+    return points, corners
+
+
 QUARTER, HALF = (0, 1), (1,)
 """Parts of a body, by the axes that its planes of symmetry are normal to."""
 
@@ -143,8 +166,7 @@ def part_of_sphere(
         half, around = 0.5 * math.pi, 2.0 * math.pi * share(planes)
         gmsh.model.occ.addSphere(0.0, 0.0, side * radius, radius, -1, -half, half, around)
 
-    points, corners = _mended(name, build, size)
-    _snap(points, planes, radius)
+    points, corners = generate_part(name, build, size, planes, radius)
     pole = int(np.argmin(np.linalg.norm(points, axis=1)))
     points[pole] = 0.0
     volume = TetMesh(name, points, corners).volume()
@@ -177,8 +199,7 @@ def part_of_plate(
             places = [(0, gmsh.model.occ.addPoint(*place)) for place in struck]
             gmsh.model.occ.fragment([(3, whole)], places)
 
-    points, corners = _mended("plate", build, size)
-    _snap(points, planes, radius)
+    points, corners = generate_part("plate", build, size, planes, radius)
     for face in (-0.5, 0.5):
         points[np.abs(points[:, 2] - face * thickness) < 1e-9 * thickness, 2] = face * thickness
     volume = TetMesh("plate", points, corners).volume()

@@ -13,8 +13,8 @@ import gmsh
 import numpy as np
 import pytest
 
-from fem_reference.body.command import LEAST_GMSH, release_of
 from fem_reference.common.mesher import start_gmsh
+from fem_reference.general_impact.command import LEAST_GMSH, release_of
 from fem_reference.tests.program import run_program
 
 if release_of(gmsh.__version__) < LEAST_GMSH:

@@ -11,10 +11,10 @@ import meshio
 import numpy as np
 import pytest
 
-from fem_reference.body.command import require_gmsh
 from fem_reference.body.mesh_file import write_body_mesh
 from fem_reference.body.scene import parse_body_scene
 from fem_reference.common.errors import RunError, SceneError, SolverError
+from fem_reference.general_impact.command import require_gmsh
 from fem_reference.tests.bodies import (
     PLATE_FACES,
     document,

@@ -21,11 +21,10 @@ from fem_reference.explicit.contact import RigidBody, SphereContact, SurfaceCont
 from fem_reference.explicit.energies import energies_of
 from fem_reference.explicit.loop import Loop
 from fem_reference.explicit.spectrum import critical_time_step
-from fem_reference.plate_impact.solid import RADIUS_STEP, rounded
 from fem_reference.solid import meshing
 from fem_reference.solid.elasticity import Assembly, cell_stress, lumped_mass, mass_form, von_mises
 from fem_reference.solid.mesh import TetMesh, check_elements, surface, tetrahedra
-from fem_reference.solid.meshing import SizeField, part_of_sphere
+from fem_reference.solid.meshing import RADIUS_STEP, SizeField, part_of_sphere, rounded
 from fem_reference.solid.model import ElasticBody, Model, nodal_areas, project, symmetry_plane
 from fem_reference.solid.system import make_loop
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 from pathlib import Path
 from typing import Any
 
 from ..common.arguments import Study
+from ..common.errors import SceneError, SolverError
+from ..common.settings import SOLVERS, Options
+from ..impact.command import solve_scene
 
 LEAST_GMSH = (4, 12)
 """Oldest release of gmsh whose CAD kernel and Python interface bodies need."""
@@ -26,8 +30,6 @@ def require_gmsh() -> None:
     """
     import gmsh
 
-    from ..common.errors import SolverError
-
     if release_of(gmsh.__version__) < LEAST_GMSH:
         raise SolverError(
             f"gmsh is {gmsh.__version__}; a body from a file needs 4.12 or later: pip install gmsh"
@@ -36,11 +38,49 @@ def require_gmsh() -> None:
 
 def _mesh(document: Any, arguments: argparse.Namespace) -> None:
     require_gmsh()
-    from .mesh_file import write_body_mesh
-    from .scene import parse_body_scene
+    from ..body.mesh_file import write_body_mesh
+    from ..body.scene import parse_body_scene
 
     write_body_mesh(arguments.out, parse_body_scene(document), arguments.size_factor)
     print(json.dumps({"mesh": str(arguments.out)}))
+
+
+def require_content(file: Path | None, content: str) -> None:
+    """Refuse a file that is not the scene's.
+
+    Raises:
+        SceneError: it is not named, cannot be read, or has another content.
+    """
+    if file is None:
+        raise SceneError("the scene has a body: --body FILE must name the file of its shape")
+    try:
+        with file.open("rb") as stream:
+            found = hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError as error:
+        raise SceneError(f"--body {file} cannot be read: {error}") from error
+    if found != content:
+        raise SceneError(
+            f"--body {file} has the SHA-256 {found}, the scene's body.content is {content}: it is "
+            "another file, or it has changed"
+        )
+
+
+def _solve(document: Any, arguments: argparse.Namespace) -> None:
+    from .scene import parse_scene
+
+    scene, options = parse_scene(document), Options.of(arguments)
+    if options.solver != SOLVERS[0]:
+        raise SceneError(f"--solver is {options.solver}; of this scene it must be {SOLVERS[0]}")
+    if scene.body is not None:
+        require_gmsh()
+        require_content(arguments.body, scene.body.content)
+
+    def made(comm: Any) -> Any:
+        from .result import solver
+
+        return solver(scene, arguments.body, comm)
+
+    solve_scene(arguments, options, made)
 
 
 def _metres(text: str) -> float:
@@ -64,7 +104,7 @@ def _groups_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _groups(arguments: argparse.Namespace) -> None:
     require_gmsh()
-    from .mesh_file import groups_of
+    from ..body.mesh_file import groups_of
 
     text = json.dumps(groups_of(arguments.file, arguments.unit), allow_nan=False)
     if arguments.out:
@@ -73,7 +113,7 @@ def _groups(arguments: argparse.Namespace) -> None:
         print(text)
 
 
-COMMANDS = {"mesh": _mesh}
+COMMANDS = {"solve": _solve, "mesh": _mesh}
 STUDIES = {
     "groups": Study(
         "named groups, size and unit of a CAD part or a mesh", _groups_arguments, _groups

@@ -1,0 +1,302 @@
+"""A body for its explicit reference: straight quadratic tetrahedra, fine around the contacts."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import dataclass, replace
+from itertools import product
+from pathlib import Path
+
+import gmsh
+import numpy as np
+
+from ..common.arrays import Floats, Ints
+from ..common.errors import SceneError, SolverError
+from ..solid.mesh import MINIMUM_QUALITY, TetMesh, qualities, surface, tetrahedra
+from .body import Body, body_of, fixed_mask
+from .cad import DELAUNAY, FRONTAL, HXT, StruckPart, largest_element, struck_part
+from .contact import described, located
+from .files import CAD, checked, gmsh_session, read_mesh
+from .part import UNIT
+from .remesh import VOLUME_ERROR, classify, moved_nodes
+from .scene import BodyScene, place
+from .sizing import (
+    WALL_SHARE,
+    ContactSize,
+    Sizes,
+    Walls,
+    grid_field,
+    requested_sizes,
+    set_fields,
+    walls,
+)
+from .tets import volume
+
+TRIANGLE3, TETRAHEDRON4 = 2, 4
+"""gmsh's numbers of elements."""
+EXACT_ZONES = 3.0
+"""Distance from a contact up to which nodes are put on the exact body, over the fine zone."""
+SMALLER = (1.0, 0.98, 0.96)
+"""Factors on the sizes away from the contacts that are tried until no element is flat."""
+
+
+@dataclass(frozen=True)
+class Fineness:
+    """Elements of a body, m."""
+
+    contacts: dict[str, tuple[float, float]]
+    """Size at a contact, and radius of the zone where it holds, by the contact's name."""
+    growth: float
+    """Of the size per distance from them."""
+    walls: float
+    """Largest element over the thickness of the wall."""
+    largest: float
+    """m"""
+    per_circle: float
+    """Elements around a circle, at least."""
+
+
+@dataclass(frozen=True)
+class Strike:
+    """A contact on a body."""
+
+    point: Floats
+    """(3,) m"""
+    normal: Floats
+    """(3,) outward."""
+    curvature: float
+    """Mean of the two principal ones, positive where the body is convex, 1/m."""
+
+
+@dataclass(frozen=True)
+class FineBody:
+    """A mesh with its contacts."""
+
+    mesh: TetMesh
+    fixed: Ints
+    """Nodes that do not move."""
+    volume: float
+    """Of the exact body, m^3."""
+    strikes: dict[str, Strike]
+    places: Floats
+    """(n, 3) of the nodes, those of the surface around the contacts on the exact body, m."""
+
+
+def fine_body(scene: BodyScene, order: int, fineness: Fineness) -> FineBody:
+    """Mesh a body.
+
+    Args:
+        scene: the body and its contacts.
+        order: of the elements.
+        fineness: how large they are.
+
+    Raises:
+        SceneError: the file, a name or a point is not sound.
+        SolverError: it cannot be meshed.
+    """
+    path = Path(scene.body.path)
+    make = _of_cad if checked(path) in CAD else _of_mesh
+    found = make(scene, path, order, fineness)
+    _require_held(found)
+    return found
+
+
+def _require_held(body: FineBody) -> None:
+    """Refuse a body whose supports lie on a line, about which it can turn.
+
+    Raises:
+        SceneError: they do.
+    """
+    if body.fixed.size == 0:
+        return
+    places = body.mesh.points[body.fixed]
+    spread = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)
+    if spread[1] <= 1e-6 * np.ptp(body.mesh.points, axis=0).max():
+        raise SceneError("body.fixed holds points on one line, about which the body can turn")
+
+
+def _of_cad(scene: BodyScene, path: Path, order: int, fineness: Fineness) -> FineBody:
+    with gmsh_session():
+        made = struck_part(scene, path)
+        strikes = {
+            name: Strike(
+                UNIT * each.place,
+                each.normal,
+                0.5 * sum(each.curvature.values) if each.curvature else 0.0,
+            )
+            for name, each in made.strikes.items()
+        }
+        sizes = _far(made.walls, fineness, UNIT, largest_element(scene))
+        faces = made.fixed_faces(scene, sizes)
+        edges = made.fixed_edges(faces, sizes)
+        contacts = _at_contacts(fineness, made.points, strikes, UNIT)
+        mesh, number = _unflat(path.name, order, UNIT, sizes, contacts, edges, fineness)
+        facets = _facets_of_faces(mesh, number)
+        fixed = np.unique(np.concatenate([_NONE, *(facets[face].ravel() for face in faces)]))
+        places = _on_faces(made, mesh, facets, fineness)
+        return FineBody(mesh, fixed, made.part.volume(), strikes, places)
+
+
+def _of_mesh(scene: BodyScene, path: Path, order: int, fineness: Fineness) -> FineBody:
+    source = read_mesh(path)
+    body = body_of(source, scene.body.unit or 1.0, path.name)
+    held = [place(each, f"body.fixed[{k}]") for k, each in enumerate(scene.body.fixed)]
+    fixed = fixed_mask(body, held)
+    strikes = {}
+    for name, contact in scene.contacts().items():
+        point, distance = located(body, place(contact.at, f"{name}.at"), f"{name}.at")
+        stated = described(body, point, distance, None)
+        curvature = 0.5 * sum(stated["curvatures"])
+        strikes[name] = Strike(np.array(stated["point"]), np.array(stated["normal"]), curvature)
+    longest = float(np.ptp(body.points, axis=0).max())
+    with gmsh_session():
+        try:
+            classify(body.skin, 1.0 / longest)
+            points = {name: _point(each, longest) for name, each in strikes.items()}
+        except Exception as error:
+            raise SolverError(
+                f"{path.name} cannot be meshed again, as its reference needs ({error}); give the "
+                "CAD part"
+            ) from error
+        found = walls(body.skin)
+        scaled = Walls(found.places / longest, found.thickness / longest, found.areas / longest**2)
+        sizes = _far(scaled, fineness, longest, None)
+        contacts = _at_contacts(fineness, points, strikes, longest)
+        mesh, _ = _unflat(path.name, order, longest, sizes, contacts, [], fineness)
+    exact = volume(body.points, body.cells)
+    if abs(mesh.volume() - exact) > VOLUME_ERROR * exact:
+        raise SolverError(
+            f"{path.name} meshed again has the volume {mesh.volume():.6g} m^3 instead of "
+            f"{exact:.6g}; give the CAD part or a finer mesh"
+        )
+    made = Body(mesh.points, tetrahedra("body", *_corners(mesh), 2).cells, body.groups)
+    nodes = np.flatnonzero(moved_nodes(body, fixed, made)[: mesh.points.shape[0]])
+    places = _on_skin(body, mesh, strikes, fineness)
+    return FineBody(mesh, nodes, exact, strikes, places)
+
+
+_NONE = np.zeros(0, dtype=np.int64)
+
+
+def _corners(mesh: TetMesh) -> tuple[Floats, Ints]:
+    return mesh.points[: int(mesh.corners.max()) + 1], mesh.corners
+
+
+def _point(strike: Strike, unit: float) -> int:
+    """Tag of a point of gmsh's model at a contact, in no element."""
+    point = int(gmsh.model.geo.addPoint(*(strike.point / unit)))
+    gmsh.model.geo.synchronize()
+    return point
+
+
+def _far(found: Walls, fineness: Fineness, unit: float, largest: float | None) -> Sizes:
+    """Sizes away from the contacts, in gmsh's unit."""
+    share = fineness.walls / WALL_SHARE
+    far = np.minimum(requested_sizes(found, largest), fineness.largest / unit / share)
+    return Sizes(found.places, found.radii(), far, (), share, 0.0)
+
+
+def _at_contacts(
+    fineness: Fineness, points: dict[str, int], strikes: dict[str, Strike], unit: float
+) -> list[ContactSize]:
+    """Elements at the contacts, in gmsh's unit."""
+    return [
+        ContactSize(points[name], strikes[name].point / unit, size / unit, zone / unit)
+        for name, (size, zone) in fineness.contacts.items()
+    ]
+
+
+def _unflat(
+    name: str,
+    order: int,
+    unit: float,
+    sizes: Sizes,
+    contacts: list[ContactSize],
+    edges: list[tuple[int, float]],
+    fineness: Fineness,
+) -> tuple[TetMesh, Ints]:
+    """The mesh of gmsh's solid without flat elements, and the node of each of gmsh's tags.
+
+    Raises:
+        SolverError: some stay with another algorithm and smaller elements, or gmsh fails.
+    """
+    reason, best = "", 0.0
+    for smaller, algorithm in product(SMALLER, (DELAUNAY, HXT)):
+        gmsh.model.mesh.clear()
+        for key, value in (("Algorithm", FRONTAL), ("Algorithm3D", algorithm), ("Optimize", 1)):
+            gmsh.option.setNumber(f"Mesh.{key}", value)
+        gmsh.option.setNumber("Mesh.ElementOrder", 1)
+        with tempfile.TemporaryDirectory() as folder:
+            path, scaled = Path(folder) / "sizes.txt", replace(sizes, scale=smaller * sizes.scale)
+            fields = [grid_field(path, sizes.places, scaled.at)]
+            set_fields(fields, contacts, edges, fineness.per_circle, fineness.growth)
+            try:
+                gmsh.model.mesh.generate(3)
+                points, corners, number = _linear(unit)
+            except Exception as error:
+                reason = str(error).strip()
+                continue
+        quality = float(qualities(points, corners).min())
+        if quality > MINIMUM_QUALITY:
+            return tetrahedra("body", points, corners, order), number
+        best = max(best, quality)
+        reason = f"the best mesh has an element of quality {best:.2g}"
+    raise SolverError(f"{name} cannot be meshed as finely as its reference needs: {reason}")
+
+
+def _linear(unit: float) -> tuple[Floats, Ints, Ints]:
+    """Points (m), corners of the tetrahedra, and the point of each of gmsh's tags (-1: none)."""
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    _, flat = gmsh.model.mesh.getElementsByType(TETRAHEDRON4)
+    if flat.size == 0:
+        raise SolverError("gmsh made no tetrahedra")
+    used = np.unique(flat.astype(np.int64))
+    number = np.full(int(tags.max()) + 1, -1, dtype=np.int64)
+    number[used] = np.arange(used.size)
+    points = np.empty((used.size, 3))
+    at = number[tags.astype(np.int64)]
+    points[at[at >= 0]] = unit * coordinates.reshape(-1, 3)[at >= 0]
+    return points, number[flat.astype(np.int64)].reshape(-1, 4), number
+
+
+def _facets_of_faces(mesh: TetMesh, number: Ints) -> dict[int, Ints]:
+    """The mesh's facets on each face of gmsh's solid."""
+    facets = surface(mesh)
+    rows = np.sort(facets[:, :3], axis=1)
+    place_of = {tuple(row): k for k, row in enumerate(rows.tolist())}
+    found: dict[int, Ints] = {}
+    for _, face in gmsh.model.getEntities(2):
+        _, nodes = gmsh.model.mesh.getElementsByType(TRIANGLE3, face)
+        own = np.sort(number[nodes.astype(np.int64)].reshape(-1, 3), axis=1).tolist()
+        found[face] = facets[[place_of[tuple(row)] for row in own]]
+    return found
+
+
+def _near(mesh: TetMesh, nodes: Ints, point: Floats, fineness: Fineness, name: str) -> Ints:
+    """Those of the nodes around a contact."""
+    away = np.linalg.norm(mesh.points[nodes] - point, axis=1)
+    return nodes[away <= EXACT_ZONES * fineness.contacts[name][1]]
+
+
+def _on_faces(
+    made: StruckPart, mesh: TetMesh, facets: dict[int, Ints], fineness: Fineness
+) -> Floats:
+    """Places of the nodes, those around the contacts on the faces of the part."""
+    places = mesh.points.copy()
+    for name, strike in made.strikes.items():
+        for face, own in facets.items():
+            near = _near(mesh, np.unique(own), UNIT * strike.place, fineness, name)
+            if near.size:
+                flat = (places[near] / UNIT).ravel().tolist()
+                closest, _ = gmsh.model.getClosestPoint(2, face, flat)
+                places[near] = UNIT * np.array(closest).reshape(-1, 3)
+    return places
+
+
+def _on_skin(body: Body, mesh: TetMesh, strikes: dict[str, Strike], fineness: Fineness) -> Floats:
+    """Places of the nodes, those around the contacts on the surface of the mesh that was given."""
+    places, nodes = mesh.points.copy(), np.unique(surface(mesh))
+    for name, strike in strikes.items():
+        for node in _near(mesh, nodes, strike.point, fineness, name):
+            places[node] = body.skin.nearest(mesh.points[node]).place
+    return places

@@ -1,0 +1,72 @@
+"""When a run may end: no further contact of any body is possible."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..common.arrays import Floats
+from ..explicit.energies import Energies
+from ..explicit.free_motions import FreeMotions, flexibility, static_shape
+from ..explicit.loop import Loop
+from ..explicit.spectrum import first_frequency
+from ..impact.ending import Approach, Ending
+from .model import STRUCK, ImpactModel
+from .motion import Motion
+
+
+class Bodies:
+    """The rigid motions of all elastic bodies, and what a contact's pressure displaces of them."""
+
+    def __init__(self, loop: Loop, made: ImpactModel) -> None:
+        self.loop, self.made = loop, made
+        self.floating = [FreeMotions(loop, k) for k in range(len(made.model.elastic))]
+
+    def rigid(self, load: Floats, vector: Floats, body: int) -> float:
+        """What the rigid motion in a displacement or velocity (3 n,) comes to under a load."""
+        floating = self.floating[body]
+        return float(floating.along(load) @ floating.coordinates(vector))
+
+    def vibration(self, energies: Energies, body: int) -> float:
+        """Energy of a body, rigid motions apart, J."""
+        moving = self.floating[body].coordinates(self.loop.v)
+        return energies.elastic[body] - 0.5 * float(moving @ moving)
+
+    def first_frequency(self) -> float:
+        """Lowest frequency of what is struck that the contacts excite, Hz."""
+        floating = self.floating[STRUCK]
+        shapes = [
+            static_shape(self.loop, STRUCK, side.patch.load(self.loop, STRUCK), floating)
+            for side in self.made.sides
+        ]
+        start = np.sum(shapes, axis=0)
+        return first_frequency(self.loop, STRUCK, start=start, floating=floating)
+
+
+def impact_ending(motion: Motion) -> Ending:
+    """When all bodies can be proven never to touch again."""
+    loop, made = motion.loop, motion.made
+    bodies = Bodies(loop, made)
+    loads, flexibilities = [], []
+    for side in made.sides:
+        patches = [(STRUCK, side.patch)]
+        if side.own is not None and side.body is not None:
+            patches.append((side.body, side.own))
+        of_side = [(body, patch.load(loop, body)) for body, patch in patches]
+        loads.append(of_side[0][1])
+        flexibilities.append(
+            [(body, flexibility(loop, body, load, bodies.floating[body])) for body, load in of_side]
+        )
+
+    def approaches(energies: Energies) -> Iterator[Approach]:
+        for side, load, softness in zip(made.sides, loads, flexibilities, strict=True):
+            clearance, opening = (
+                float(side.strike.normal @ motion.of_side(vector, side))
+                - (bodies.rigid(load, getattr(loop, vector), STRUCK) if made.has_struck else 0.0)
+                for vector in ("u", "v")
+            )
+            vibrating = tuple((bodies.vibration(energies, body), c) for body, c in softness)
+            yield Approach(side.gap + clearance, opening, vibrating)
+
+    return Ending(loop, approaches)

@@ -1,0 +1,100 @@
+"""How an impact is solved on a series of meshes, and what only its result states."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ..common.arrays import Floats
+from ..impact.history import Force, Level, curve_uncertainty
+from ..impact.result import Details, ImpactSolver
+from ..impact.series import MeshResult, Target
+from ..solid.elasticity import write_fields
+from .scene import Scene
+from .solve import Solution, compute, method
+
+RATIO = 0.84
+"""Elements of a mesh over those of the next finer one, in every direction."""
+MINOR = 0.05
+"""Of the impact: what passes on less needs not be known to more digits than the impact itself."""
+CURVES = (
+    Level("outer_displacement", 0),
+    Level("inner_displacement", 3),
+    Level("outer_velocity", 1),
+    Level("inner_velocity", 4),
+    Force("outer_force", (2,)),
+    Force("inner_force", (5,)),
+)
+"""Of the rows of `Motion.sample`."""
+TARGETED = (
+    Target("efficiency", small=MINOR),
+    Target("outer_restitution", small=1.0),
+    Target("outer_force_peak"),
+    Target("inner_force_peak", small=MINOR, of="outer_force_peak"),
+)
+
+
+def curves(scene: Scene) -> tuple[Level | Force, ...]:
+    """Those that the scene has."""
+    return tuple(curve for curve in CURVES if scene.has(curve.name))
+
+
+def solver(scene: Scene, file: Path | None, comm: Any) -> ImpactSolver[Solution]:
+    """How the scene is solved; ``file`` has the shape of its body."""
+    return ImpactSolver(
+        scene=scene,
+        method=method(scene),
+        end_time=scene.end_time,
+        ratio=RATIO,
+        targeted=tuple(target for target in TARGETED if scene.has(target.name)),
+        compute=lambda factor, settings, report, _: compute(
+            scene, file, factor, settings, comm, report
+        ),
+        quantities=partial(quantities, scene),
+        curves=curves(scene),
+        details=partial(_details, scene),
+    )
+
+
+def quantities(scene: Scene, solution: Solution) -> dict[str, float]:
+    """The summary's physical quantities, SI; a contact that never closed ends at 0."""
+    run, inner = solution.run, scene.inner
+    found = {
+        "outer_velocity_final": run.outer_velocity,
+        "outer_restitution": (run.outer_velocity - run.struck_velocities[0]) / scene.closing_speed,
+    }
+    if inner is not None and run.inner_velocity is not None:
+        transmitted = inner.mass * run.inner_velocity**2
+        found["efficiency"] = transmitted / (scene.outer.mass * scene.speed**2)
+        found["inner_velocity_final"] = run.inner_velocity
+        if scene.has("inner_restitution"):
+            parted = run.struck_velocities[1] - run.inner_velocity
+            found["inner_restitution"] = parted / scene.inner_speed
+    for name, contact in zip(scene.partners(), run.contacts, strict=True):
+        found[f"{name}_force_peak"] = contact.force_peak
+        found[f"{name}_contact_end"] = contact.end or 0.0
+        found[f"{name}_impulse"] = contact.impulse
+    if scene.has("first_frequency"):
+        found["first_frequency"] = solution.first_frequency()
+    return found
+
+
+def _details(
+    scene: Scene, folder: Path, solution: Solution, meshes: list[MeshResult], bands: Floats
+) -> Details:
+    """See `ImpactSolver.details`."""
+    run = solution.run
+    return Details(
+        contacts=tuple(scene.partners()),
+        duration=solution.sizes.duration,
+        mesh=solution.mesh_report(),
+        solver=solution.machine(),
+        settings=solution.settings(),
+        stress_times=write_fields(folder, solution.made.model, solution.recorder),
+        summary={
+            f"{name}_contacts": None if run.in_contact_at_end else contact.count
+            for name, contact in zip(scene.partners(), run.contacts, strict=True)
+        },
+        uncertainty=curve_uncertainty(curves(scene), bands),
+    )
