@@ -1,0 +1,54 @@
+"""Makes the CAD parts of this folder: `python3 parts.py [NAME ...]`, with gmsh; sizes in mm."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import gmsh
+
+occ = gmsh.model.occ
+
+
+def edges(low: tuple[float, ...], high: tuple[float, ...]) -> list[int]:
+    """Edges within a box."""
+    occ.synchronize()
+    return [tag for _, tag in gmsh.model.getEntitiesInBoundingBox(*low, *high, 1)]
+
+
+def bracket() -> None:
+    """An angle of two walls with a fillet, 30 x 20 x 20 mm."""
+    foot = occ.addBox(0, 0, 0, 30, 20, 3)
+    wall = occ.addBox(0, 0, 0, 2, 20, 20)
+    solid = occ.fuse([(3, foot)], [(3, wall)])[0][0][1]
+    occ.fillet([solid], edges((1.9, -1, 2.9), (2.1, 21, 3.1)), [4])
+
+
+def casing() -> None:
+    """A cup of 24 mm diameter with a floor of 1.5 mm and a fillet inside."""
+    outside = occ.addCylinder(0, 0, 0, 0, 0, 12, 12)
+    inside = occ.addCylinder(0, 0, 1.5, 0, 0, 12, 10)
+    solid = occ.cut([(3, outside)], [(3, inside)])[0][0][1]
+    occ.fillet([solid], edges((-10.1, -10.1, 1.4), (10.1, 10.1, 1.6)), [2])
+
+
+def block() -> None:
+    """A cube of 20 mm."""
+    occ.addBox(-10, -10, -20, 20, 20, 20)
+
+
+PARTS: dict[str, Callable[[], None]] = {part.__name__: part for part in (bracket, casing, block)}
+
+
+def write(name: str, folder: Path) -> None:
+    """Writes NAME.step into a folder."""
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    PARTS[name]()
+    occ.synchronize()
+    gmsh.write(str(folder / f"{name}.step"))
+    gmsh.finalize()
+
+
+if __name__ == "__main__":
+    for part in sys.argv[1:] or PARTS:
+        write(part, Path(__file__).parent)
