@@ -19,6 +19,7 @@ mod new;
 mod optimise;
 mod progress;
 mod propagated;
+mod record_map;
 mod reduced;
 mod reference;
 mod requested_model;
