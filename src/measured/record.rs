@@ -72,12 +72,12 @@ impl Record {
         let text = columns::decoded(bytes, map.table.encoding.as_deref())?;
         let Found { columns, map, how } = columns::read(&text, map, &known, FEWEST)?;
         // histories of this program have more curves than instruments show
-        let measured = columns.values.iter().cloned().filter(|(name, _)| SIGNALS.contains(name));
+        let columns::Columns { time, values, gaps, integrals } = columns;
+        let measured = values.into_iter().filter(|(name, _)| SIGNALS.contains(name));
         let channels: Vec<_> = measured.map(|(quantity, values)| Channel { quantity, values }).collect();
         if channels.is_empty() {
             return Err(format!("it has none of the signals {}", SIGNALS.join(", ")));
         }
-        let columns::Columns { time, gaps, integrals, .. } = columns;
         let record = Record { file: path.to_path_buf(), time, channels, gaps, integrals };
         Ok(ReadRecord { record, map, how })
     }
