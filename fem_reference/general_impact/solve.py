@@ -1,4 +1,4 @@
-"""From a scene to a solution on one mesh: contact radii, mesh, step, check, and repeat if need be."""
+"""From a scene to a solution on one mesh: contact radii, mesh, step, check, repeat if need be."""
 
 from __future__ import annotations
 
