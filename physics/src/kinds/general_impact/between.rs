@@ -51,16 +51,19 @@ impl Between {
         });
         let moving = moving.transpose()?;
         // contact patches under the force of the outer body on a half-space
-        let law = |moving: &MovingBody| Hertz::new(moving.tip_radius, &moving.material, &body.material);
-        let hit = HertzImpact { mass: outer.mass, speed: outer.speed, stiffness: law(&outer).stiffness };
+        let faces = elastic.faces(body);
+        let law =
+            |moving: &MovingBody, face: &Material| Hertz::new(moving.tip_radius, &moving.material, face);
+        let stiffness = law(&outer, faces[0]).stiffness;
+        let hit = HertzImpact { mass: outer.mass, speed: outer.speed, stiffness };
         // or that of the inner one, if that is the heavier blow
         let own = moving.as_ref().map_or(0.0, |inner| {
             let speed = inner.speed.max(0.0);
-            HertzImpact { mass: inner.mass, speed, stiffness: law(inner).stiffness }.force_peak()
+            HertzImpact { mass: inner.mass, speed, stiffness: law(inner, faces[1]).stiffness }.force_peak()
         });
         let force = hit.force_peak().max(own);
-        let patch = [Some(&outer), moving.as_ref()]
-            .map(|moving| moving.map_or(1.0, |moving| law(moving).contact_radius(force)));
+        let radius = |moving: &MovingBody, face| law(moving, face).contact_radius(force);
+        let patch = [radius(&outer, faces[0]), moving.as_ref().map_or(1.0, |inner| radius(inner, faces[1]))];
         let tip = |shape: &Shape, material: &Material, patch: f64| {
             sphere_radius(shape).map_or(0.0, |radius| sphere_residual(radius, material, patch))
         };
@@ -69,8 +72,8 @@ impl Between {
             inner.map_or(0.0, |inner| tip(&inner.shape, &inner.material, patch[1])),
         ];
         let join = |modal: ModalBody| match &moving {
-            Some(inner) => System::of(&[outer.clone(), inner.clone()], &modal, &body.material, tips),
-            None => System::on_body(outer.clone(), &modal, &body.material, tips[0]),
+            Some(inner) => System::between(&[outer.clone(), inner.clone()], &modal, faces, tips),
+            None => System::on_body(outer.clone(), &modal, faces[0], tips[0]),
         };
         let (fine, coarse) = elastic.modal(body, patch);
         let system = join(fine);
@@ -79,14 +82,14 @@ impl Between {
         warnings.extend(elastic.patch_warnings(patch));
         warnings.extend(plate_impact::punches(&system, patch));
         let radii = [Some(given.shape.tip_radius()), inner.map(|inner| inner.shape.tip_radius())];
-        if body.material.yield_strength.is_some() {
+        if faces.iter().any(|face| face.yield_strength.is_some()) {
             warnings.extend(elastic.ellipses(radii)?);
         }
         let between = Self {
             coarse: coarse.map(join),
             alignment: normals.get(1).map_or(0.0, |inner| -normals[0].dot(inner)),
             free_mass: (!elastic.fine.rigid.is_empty())
-                .then_some(body.material.density * elastic.fine.volume),
+                .then_some(body.materials.named(None).density * elastic.fine.mass),
             fewer: 2 * DROPPED * elastic.contacts.len(),
             warnings,
         };
@@ -138,9 +141,10 @@ impl Between {
 
 #[cfg(test)]
 mod tests {
+    use super::super::BodyMaterials;
     use super::*;
     use crate::analytical::hertz::HertzImpact;
-    use crate::body::solid::{ContactInfo, StruckPoint, StruckSolid, SurfacePoint, boxes};
+    use crate::body::solid::{CellMaterials, ContactInfo, StruckPoint, StruckSolid, SurfacePoint, boxes};
     use crate::dynamics::integrate;
     use crate::dynamics::integration::{Integration, Options};
     use approx::assert_relative_eq;
@@ -189,15 +193,18 @@ mod tests {
             wall: size[2],
             layers: bricks[2] as f64,
             edge_distance: edge.min(0.5 * size[0] - at[0].abs()),
+            material: None,
+            material_distance: f64::INFINITY,
         };
-        let solid = StruckSolid::new(&mesh, STEEL[1], &fixed, &[contact.struck()]).expect("solid");
+        let solid = StruckSolid::new(&mesh, &CellMaterials::one(steel()), &fixed, &[contact.struck()])
+            .expect("solid");
         let elastic =
             ElasticBody { fine: solid, coarse: None, contacts: vec![contact], warnings: Vec::new() };
         let body = Body {
             file: "block.msh".into(),
             content: String::new(),
             unit: None,
-            material: steel(),
+            materials: BodyMaterials::Material(steel()),
             fixed: Vec::new(),
             element_size: None,
             damping_ratio: 0.0,
@@ -326,11 +333,13 @@ mod tests {
             |p: &Vector3<f64>| p.z == 0.0 && p.x == p.y,
         ] {
             let fixed: Vec<bool> = mesh.points.iter().map(held).collect();
-            let refused = StruckSolid::new(&mesh, 0.3, &fixed, &[]).expect_err("it can turn").to_string();
+            let refused = StruckSolid::new(&mesh, &CellMaterials::one(steel()), &fixed, &[])
+                .expect_err("it can turn")
+                .to_string();
             assert!(refused.contains("it can turn"), "{refused}");
         }
         let fixed: Vec<bool> = mesh.points.iter().map(|p| p.z == 0.0).collect();
-        assert!(StruckSolid::new(&mesh, 0.3, &fixed, &[]).is_ok());
+        assert!(StruckSolid::new(&mesh, &CellMaterials::one(steel()), &fixed, &[]).is_ok());
     }
 
     /// A contact on what is held, and one whose circle leaves the face.
@@ -340,7 +349,12 @@ mod tests {
         let refused = |at: [f64; 2], fixed: fn(f64) -> bool| {
             let fixed: Vec<bool> = mesh.points.iter().map(|p| fixed(p.z)).collect();
             let at = SurfacePoint { point: Vector3::new(at[0], at[1], 0.5), normal: Vector3::z() };
-            StruckSolid::new(&mesh, 0.3, &fixed, &[StruckPoint { at, circles: [0.15, 0.2, 0.3] }])
+            StruckSolid::new(
+                &mesh,
+                &CellMaterials::one(steel()),
+                &fixed,
+                &[StruckPoint { at, circles: [0.15, 0.2, 0.3] }],
+            )
         };
         let held = refused([0.5; 2], |z| z > 0.49).expect_err("held").to_string();
         assert!(held.contains("held"), "{held}");

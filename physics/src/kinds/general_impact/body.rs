@@ -3,10 +3,12 @@
 use crate::error::{Error, Result};
 use crate::material::Material;
 use crate::scene::hash::{canonical, sha256_hex};
+use crate::scene::material::material;
 use crate::scene::values::{Checked, Node, PLACE, Values};
 use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -29,6 +31,63 @@ pub enum BodyPlace {
     Point([f64; 3]),
 }
 
+/// What a body consists of.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BodyMaterials {
+    /// The same material everywhere.
+    Material(Material),
+    /// The material of each group of elements, by the group's name in the file.
+    Materials(BTreeMap<String, Material>),
+}
+
+impl BodyMaterials {
+    /// Reads `material` or `materials` of the checked table `body`.
+    fn read(body: &Node, materials: &Node) -> Result<Self> {
+        let Some(groups) = body.optional_table("materials")? else {
+            return Ok(Self::Material(material(materials, body.text("material")?)?));
+        };
+        let of = |group: &String| Ok((group.clone(), material(materials, groups.text(group)?)?));
+        groups.0.keys().map(of).collect::<Result<_>>().map(Self::Materials)
+    }
+
+    /// Each material once, by its name, ordered by the names of the groups.
+    pub fn all(&self) -> Vec<&Material> {
+        let mut found: Vec<&Material> = Vec::new();
+        let groups = match self {
+            Self::Material(material) => return vec![material],
+            Self::Materials(groups) => groups,
+        };
+        for material in groups.values() {
+            if found.iter().all(|other| other.name != material.name) {
+                found.push(material);
+            }
+        }
+        found
+    }
+
+    /// The material called `name` in the mesh; a body of one material has no names there.
+    pub fn named(&self, name: Option<&str>) -> &Material {
+        let all = self.all();
+        all.iter().find(|material| Some(&*material.name) == name).unwrap_or(&all[0])
+    }
+
+    /// Whether it may differ from place to place.
+    pub fn is_by_group(&self) -> bool {
+        matches!(self, Self::Materials(_))
+    }
+
+    /// Names by group as the mesher reads them; null for one material.
+    fn names(&self) -> Value {
+        match self {
+            Self::Material(_) => Value::Null,
+            Self::Materials(groups) => {
+                groups.iter().map(|(group, m)| (group.clone(), json!(m.name))).collect()
+            }
+        }
+    }
+}
+
 /// An elastic body whose shape is in a file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Body {
@@ -39,8 +98,9 @@ pub struct Body {
     pub content: String,
     /// Size in m of the file's unit of length; `None` = the file knows its own, or m.
     pub unit: Option<f64>,
-    /// Material.
-    pub material: Material,
+    /// Its material, or its materials by group.
+    #[serde(flatten)]
+    pub materials: BodyMaterials,
     /// What does not move; nothing = the body is free.
     pub fixed: Vec<BodyPlace>,
     /// Size of elements away from the contacts in m, of CAD; `None` = by the thickness of walls.
@@ -53,7 +113,7 @@ pub struct Body {
 
 impl Body {
     /// The body that the checked table `body` describes, struck at the places `at`.
-    pub(super) fn read(body: &Node, material: Material, at: [Option<BodyPlace>; 2]) -> Result<Self> {
+    pub(super) fn read(body: &Node, materials: &Node, at: [Option<BodyPlace>; 2]) -> Result<Self> {
         let unit = match body.0.get("unit") {
             Some(Checked::Text(unit)) => {
                 Some(UNITS.iter().find(|(name, _)| name == unit).map_or(1.0, |u| u.1))
@@ -66,7 +126,7 @@ impl Body {
             file: body.text("file")?.into(),
             content: body.text(CONTENT)?.to_owned(),
             unit,
-            material,
+            materials: BodyMaterials::read(body, materials)?,
             fixed: fixed.into_iter().flatten().collect(),
             element_size: body.optional_number("element_size")?,
             damping_ratio: body.number_or("damping_ratio", 0.0)?,
@@ -80,7 +140,8 @@ impl Body {
         let document = json!({
             "kind": super::NAME,
             "body": {
-                "unit": self.unit, "fixed": self.fixed, "element_size": self.element_size, "materials": null,
+                "unit": self.unit, "fixed": self.fixed, "element_size": self.element_size,
+                "materials": self.materials.names(),
             },
             "outer": contact(&self.at[0]),
             "inner": contact(&self.at[1]),

@@ -90,9 +90,14 @@ impl Reduced {
             let [outer, inner] = self.impacts().elastic_speeds(&onset, options);
             ElasticLimit { outer, inner }
         };
-        Ok(OnsetOfYield::new(materials, Some(Bending::new(&setup.plate)), &self.system)
-            .filter(|_| covered)
-            .map(limit))
+        let [outer, plate, inner] = materials;
+        Ok(OnsetOfYield::new(
+            [[outer, plate], [inner, plate]],
+            Some(Bending::new(&setup.plate)),
+            &self.system,
+        )
+        .filter(|_| covered)
+        .map(limit))
     }
 
     /// Contacts of an elastic model whose pressure alone would not yield, but does with the bending of the plate.
