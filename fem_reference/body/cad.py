@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,7 +17,7 @@ from .body import Body, check_one_part, check_quality, require_near
 from .cells import GMSH_NODES
 from .contact import EDGE_ELEMENTS, described
 from .curvature import Curvature, of_face
-from .part import TRIANGLE6, UNIT, Part, coarse_skin, load, on_face, unmeshable
+from .part import TRIANGLE6, UNIT, Part, coarse_skin, disc_part, load, on_face, unmeshable
 from .scene import BodyScene, Place, place
 from .sizing import (
     CONTACT_SHARE,
@@ -34,9 +35,10 @@ from .sizing import (
 from .skin import Skin, SurfacePoint
 from .tets import qualities
 
-FRONTAL, DELAUNAY, HXT = 6, 1, 10
-"""gmsh's numbers of its algorithms, the first in two dimensions. Delaunay on its own triangles left
-flat tetrahedra in a thin plate."""
+FRONTAL, PLANE_DELAUNAY, DELAUNAY, HXT = 6, 5, 1, 10
+ALGORITHMS = ((FRONTAL, DELAUNAY), (FRONTAL, HXT), (PLANE_DELAUNAY, DELAUNAY))
+"""gmsh's numbers of its algorithms for surface and volume, in the order they are tried. Delaunay on
+its own triangles left flat tetrahedra in a thin plate, but it meshes the tip of a cone."""
 POOR = 0.01
 """Quality below which the next algorithm is tried."""
 TETRAHEDRON10 = 11
@@ -78,7 +80,7 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     Raises:
         SceneError: the file, a name, a point or a size is not sound, or gmsh cannot mesh it.
     """
-    part = load(path, scene.body.unit)
+    part = disc_part(scene.body.disc) if scene.body.disc else load(path, scene.body.unit)
     skin, owner = coarse_skin(part)
     found = walls(skin)
     strikes = {
@@ -91,11 +93,7 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     sizes = chosen_sizes(found, contacts, largest)
     faces = _fixed_faces(scene, part, skin, owner, sizes)
     edges = _fixed_edges(faces, skin, owner, sizes)
-    for algorithm in (DELAUNAY, HXT):
-        _generate(part, sizes, factor, edges, algorithm)
-        body, number = _body(part)
-        if qualities(body.points, body.cells).min() > POOR:
-            break
+    body, number = _generated(part, sizes, factor, edges)
     check_quality(body, part.name)
     check_one_part(body, part.name)
     return CadMesh(
@@ -198,14 +196,44 @@ def _fixed_edges(
     return found
 
 
+def _generated(
+    part: Part, sizes: Sizes, factor: float, fixed_edges: list[tuple[int, float]]
+) -> tuple[Body, Ints]:
+    """The mesh, as `_body` has it, of the first algorithms that make no poor elements, or the best.
+
+    Raises:
+        SceneError: none makes a mesh.
+    """
+    best, quality, fault = None, -math.inf, unmeshable(part.name, "")
+    for algorithms in ALGORITHMS:
+        try:
+            _generate(part, sizes, factor, fixed_edges, algorithms)
+            made = _body(part)
+        except SceneError as error:
+            fault = error
+            continue
+        worst = float(qualities(made[0].points, made[0].cells).min())
+        if worst > POOR:
+            return made
+        if worst > quality:
+            best, quality = made, worst
+    if best is None:
+        raise fault
+    return best
+
+
 def _generate(
-    part: Part, sizes: Sizes, factor: float, fixed_edges: list[tuple[int, float]], algorithm: int
+    part: Part,
+    sizes: Sizes,
+    factor: float,
+    fixed_edges: list[tuple[int, float]],
+    algorithms: tuple[int, int],
 ) -> None:
     """Mesh the part in gmsh."""
     gmsh.model.mesh.clear()
     for key, value in (
-        ("Mesh.Algorithm", FRONTAL),
-        ("Mesh.Algorithm3D", algorithm),
+        ("Mesh.Algorithm", algorithms[0]),
+        ("Mesh.Algorithm3D", algorithms[1]),
         ("Mesh.Optimize", 1),
         ("Mesh.ElementOrder", 2),
         ("Mesh.HighOrderOptimize", 1),

@@ -76,6 +76,8 @@ def meshed(scene: BodyScene, factor: float) -> Meshed:
         SolverError: a mesh could not be made coarser.
     """
     path = Path(scene.body.path)
+    if scene.body.disc:
+        return _from_cad(scene, path, factor)
     return (_from_cad if checked(path) in CAD else _from_mesh)(scene, path, factor)
 
 
@@ -86,7 +88,7 @@ def _from_cad(scene: BodyScene, path: Path, factor: float) -> Meshed:
     found = volume(made.body.points, made.body.cells)
     if abs(found - made.volume) > VOLUME_ERROR * made.volume:
         raise SolverError(
-            f"the mesh of {path.name} has the volume {found:.6g} m^3, the part {made.volume:.6g} "
+            f"the mesh of {made.part.name} has the volume {found:.6g} m^3, the part {made.volume:.6g} "
             f"m^3: more than {100 * VOLUME_ERROR:g} % apart; set body.element_size to a smaller one"
         )
     contacts = {name: made.contacts.get(name) for name in ("outer", "inner")}

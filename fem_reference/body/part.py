@@ -12,7 +12,8 @@ from ..common.arrays import Floats, Ints
 from ..common.errors import SceneError
 from .body import check_size
 from .files import checked
-from .scene import Place
+from .scene import Disc, Place
+from .sizing import SMALLEST_SHARE
 from .skin import Skin
 from .source import Group, named
 from .step_text import read_step
@@ -98,6 +99,14 @@ def load(path: Path, unit: float | None) -> Part:
     return Part(path.name, solids[0], unit, groups)
 
 
+def disc_part(disc: Disc) -> Part:
+    """A circular plate in gmsh's model."""
+    thickness, radius = disc.thickness / UNIT, disc.radius / UNIT
+    solid = gmsh.model.occ.addCylinder(0.0, 0.0, 0.0, 0.0, 0.0, thickness, radius)
+    gmsh.model.occ.synchronize()
+    return Part("the plate", solid, UNIT, _groups(solid, []))
+
+
 def _groups(solid: int, labels: list[tuple[str, str]]) -> list[Group]:
     faces = [tag for _, tag in gmsh.model.getEntities(2)]
     by_name: dict[str, list[int]] = {}
@@ -140,7 +149,9 @@ def coarse_skin(part: Part) -> tuple[Skin, Ints]:
     """
     check_size(part.box())
     least, most = (np.array(each) for each in part.box())
-    gmsh.option.setNumber("Mesh.MeshSizeMax", float((most - least).max()) / UNIT / COARSE_ELEMENTS)
+    side = float((most - least).max()) / UNIT
+    gmsh.option.setNumber("Mesh.MeshSizeMax", side / COARSE_ELEMENTS)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", SMALLEST_SHARE * side)
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", PER_CIRCLE)
     gmsh.option.setNumber("Mesh.ElementOrder", 2)
     gmsh.option.setNumber("Mesh.HighOrderOptimize", 0)

@@ -43,6 +43,8 @@ DOFS_PER_CUBE = 14.4
 RAYS = 2000
 GRID = 40
 """Intervals of the grid along the body's longest side."""
+SMALLEST_SHARE = 1e-3
+"""Smallest element over the body's longest side: at the tip of a cone curvature has no bound."""
 PER_CIRCLE, LEAST_PER_CIRCLE = 10.0, 6.0
 """Elements around a circle at size factor 1, and at any."""
 OBLIQUE = 0.5
@@ -196,6 +198,10 @@ def set_sizes(
     least = gmsh.model.mesh.field.add("Min")
     gmsh.model.mesh.field.setNumbers(least, "FieldsList", fields)
     gmsh.model.mesh.field.setAsBackgroundMesh(least)
+    side = float(np.ptp(sizes.places, axis=0).max())
+    requested = [each.size for each in sizes.contacts] + [size for _, size in fixed_edges]
+    smallest = min(SMALLEST_SHARE * side, *(0.5 * factor * size for size in requested))
+    gmsh.option.setNumber("Mesh.MeshSizeMin", smallest)
     per_circle = max(PER_CIRCLE / factor, LEAST_PER_CIRCLE)
     for source, value in (
         ("ExtendFromBoundary", 0),

@@ -9,7 +9,7 @@ use crate::body::continuum::{MeshOptions, cached};
 use crate::body::free_sphere::sphere_residual;
 use crate::contact::Hertz;
 use crate::dynamics::MovingBody;
-use crate::dynamics::system::System;
+use crate::dynamics::system::{PLATE, System};
 use crate::error::Result;
 use crate::kinds::plate_impact;
 use crate::result::limit::SMALL_DEFLECTION;
@@ -139,6 +139,26 @@ impl Between {
     }
 }
 
+/// The system of `outer` that strikes `plate` beside its centre, behind which `inner` lies, on a mesh and on a coarser one if there is one; and
+/// what the user has to know of them.
+///
+/// # Errors
+/// As [`ElasticBody::new`].
+pub(in crate::kinds) fn off_centre_plate(
+    plate: &Plate,
+    outer: &Outer,
+    inner: &Inner,
+) -> Result<(System, Option<System>, Vec<String>)> {
+    let body = Body::of_plate(plate, outer.offset);
+    let elastic = ElasticBody::new(&body)?;
+    let (mut system, between) =
+        Between::joined(elastic, &body, MovingBody::outer(outer)?, outer, Some(inner))?;
+    // the plate is observed at its centre, under the inner body
+    let inner: Vec<f64> = system.approach[1][PLATE..].iter().map(|approach| -approach).collect();
+    system.centre[PLATE..].copy_from_slice(&inner);
+    Ok((system, between.coarse, between.warnings))
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::BodyMaterials;
@@ -209,6 +229,7 @@ mod tests {
             element_size: None,
             damping_ratio: 0.0,
             at: [None, None],
+            disc: None,
         };
         let mass = Shape::Sphere { radius }.mass(&steel());
         let outer = Outer::centred(Shape::Compact { mass, tip_radius: radius }, steel(), speed);

@@ -5,6 +5,7 @@ use crate::material::Material;
 use crate::scene::hash::{canonical, sha256_hex};
 use crate::scene::material::material;
 use crate::scene::values::{Checked, Node, PLACE, Values};
+use crate::scene::{Edge, Plate};
 use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -51,7 +52,7 @@ impl BodyMaterials {
         groups.0.keys().map(of).collect::<Result<_>>().map(Self::Materials)
     }
 
-    /// Each material once, by its name, ordered by the names of the groups.
+    /// Each material once, whatever its names, ordered by the names of the groups.
     pub fn all(&self) -> Vec<&Material> {
         let mut found: Vec<&Material> = Vec::new();
         let groups = match self {
@@ -59,7 +60,7 @@ impl BodyMaterials {
             Self::Materials(groups) => groups,
         };
         for material in groups.values() {
-            if found.iter().all(|other| other.name != material.name) {
+            if !found.iter().any(|other| is_same(other, material)) {
                 found.push(material);
             }
         }
@@ -77,15 +78,20 @@ impl BodyMaterials {
         matches!(self, Self::Materials(_))
     }
 
-    /// Names by group as the mesher reads them; null for one material.
+    /// Names by group as the mesher reads them, one for each of [`Self::all`]; null for one material.
     fn names(&self) -> Value {
+        let all = self.all();
+        let name = |own: &Material| json!(all.iter().find(|other| is_same(other, own)).map(|m| &m.name));
         match self {
             Self::Material(_) => Value::Null,
-            Self::Materials(groups) => {
-                groups.iter().map(|(group, m)| (group.clone(), json!(m.name))).collect()
-            }
+            Self::Materials(groups) => groups.iter().map(|(group, m)| (group.clone(), name(m))).collect(),
         }
     }
+}
+
+/// Whether two materials differ in their names alone.
+fn is_same(a: &Material, b: &Material) -> bool {
+    *a == Material { name: a.name.clone(), ..b.clone() }
 }
 
 /// An elastic body whose shape is in a file.
@@ -109,6 +115,18 @@ pub struct Body {
     pub damping_ratio: f64,
     /// Where outer and inner body strike; `None` for an inner body that is not there.
     pub at: [Option<BodyPlace>; 2],
+    /// The mesher makes this circular plate itself, and there is no file.
+    #[serde(skip)]
+    pub disc: Option<Disc>,
+}
+
+/// A circular plate about the z axis, from z = 0 to its thickness.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Disc {
+    /// In m.
+    pub radius: f64,
+    /// In m.
+    pub thickness: f64,
 }
 
 impl Body {
@@ -131,13 +149,31 @@ impl Body {
             element_size: body.optional_number("element_size")?,
             damping_ratio: body.number_or("damping_ratio", 0.0)?,
             at,
+            disc: None,
         })
+    }
+
+    /// The circular `plate`, struck from above at `offset` m from its axis and from below at its centre.
+    pub(super) fn of_plate(plate: &Plate, offset: f64) -> Self {
+        let Plate { radius, thickness, edge, ref material, damping_ratio } = *plate;
+        let rim = BodyPlace::Point([radius, 0.0, 0.5 * thickness]);
+        Self {
+            file: PathBuf::new(),
+            content: String::new(),
+            unit: Some(1.0),
+            materials: BodyMaterials::Material(material.clone()),
+            fixed: if edge == Edge::Free { Vec::new() } else { vec![rim] },
+            element_size: None,
+            damping_ratio,
+            at: [[offset, 0.0, thickness], [0.0; 3]].map(|at| Some(BodyPlace::Point(at))),
+            disc: Some(Disc { radius, thickness }),
+        }
     }
 
     /// What its mesh depends on, with elements `factor` times as large as by default.
     pub fn mesh_request(&self, factor: f64) -> MeshRequest {
         let contact = |at: &Option<BodyPlace>| at.as_ref().map(|at| json!({ "at": at }));
-        let document = json!({
+        let mut document = json!({
             "kind": super::NAME,
             "body": {
                 "unit": self.unit, "fixed": self.fixed, "element_size": self.element_size,
@@ -146,11 +182,14 @@ impl Body {
             "outer": contact(&self.at[0]),
             "inner": contact(&self.at[1]),
         });
+        if let Some(disc) = self.disc {
+            document["body"]["disc"] = json!(disc);
+        }
         let key = json!({ "document": document, "content": self.content, "factor": factor, "revision": MESH_REVISION });
         let key = sha256_hex(canonical(&key).as_bytes());
-        let mut document = document;
         document["body"]["path"] = json!(self.file);
-        MeshRequest { document, factor, key, file: (self.file.clone(), self.content.clone()) }
+        let file = self.disc.is_none().then(|| (self.file.clone(), self.content.clone()));
+        MeshRequest { document, factor, key, file }
     }
 }
 
@@ -167,8 +206,8 @@ pub struct MeshRequest {
     pub factor: f64,
     /// SHA-256 of all that the mesh depends on.
     pub key: String,
-    /// The file, and the SHA-256 of its content when the scene was read.
-    pub file: (PathBuf, String),
+    /// The file, if there is one, and the SHA-256 of its content when the scene was read.
+    pub file: Option<(PathBuf, String)>,
 }
 
 /// Makes a mesh, or finds the one that is there: a `.vtu` file with its description in the `.json` file of the same name.

@@ -10,7 +10,9 @@ mod results;
 mod scene;
 mod soundness;
 
-pub use body::{Body, BodyMaterials, BodyPlace, MeshRequest, Mesher, content, set_mesher};
+pub(super) use between::off_centre_plate;
+pub use body::{Body, BodyMaterials, BodyPlace, Disc, MeshRequest, Mesher, content, set_mesher};
+pub(super) use model::OF_COARSER;
 pub use model::difference_from_hertz;
 pub use results::{CURVES, ImpactQuantities};
 pub use scene::{GeneralImpact, Struck, Wall};

@@ -26,7 +26,7 @@ use std::time::Instant;
 const LOW_ACCURACY: f64 = 1e-6;
 /// Error of a mesh over the change from one with elements twice as large: 1/(2^p - 1) with the order p = 1.6. On nine meshes of a plate,
 /// whose edge is singular, p was 1.8 to 3.3: the error is rather stated too large.
-const OF_COARSER: f64 = 0.5;
+pub(in crate::kinds) const OF_COARSER: f64 = 0.5;
 /// Quantities whose change is the error by modes or mesh.
 const COMPARED: [&str; 3] = ["efficiency", "outer_force_peak", "inner_force_peak"];
 /// Change of the force peak by it from which on there is a warning.
