@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -36,9 +36,10 @@ from .skin import Skin, SurfacePoint
 from .tets import qualities
 
 FRONTAL, PLANE_DELAUNAY, DELAUNAY, HXT = 6, 5, 1, 10
-ALGORITHMS = ((FRONTAL, DELAUNAY), (FRONTAL, HXT), (PLANE_DELAUNAY, DELAUNAY))
-"""gmsh's numbers of its algorithms for surface and volume, in the order they are tried. Delaunay on
-its own triangles left flat tetrahedra in a thin plate, but it meshes the tip of a cone."""
+"""gmsh's numbers of its algorithms, the first two in two dimensions. Delaunay on its own triangles
+left flat tetrahedra in a thin plate, but frontal triangles overlap at the tip of a cone."""
+SHARPEST = 25.0
+"""Least half angle of a cone's tip, degrees: gmsh's meshes of sharper ones overlap or never end."""
 POOR = 0.01
 """Quality below which the next algorithm is tried."""
 TETRAHEDRON10 = 11
@@ -93,7 +94,11 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     sizes = chosen_sizes(found, contacts, largest)
     faces = _fixed_faces(scene, part, skin, owner, sizes)
     edges = _fixed_edges(faces, skin, owner, sizes)
-    body, number = _generated(part, sizes, factor, edges)
+    for algorithms in _algorithms(part):
+        _generate(part, sizes, factor, edges, algorithms)
+        body, number = _body(part)
+        if qualities(body.points, body.cells).min() > POOR:
+            break
     check_quality(body, part.name)
     check_one_part(body, part.name)
     return CadMesh(
@@ -196,30 +201,37 @@ def _fixed_edges(
     return found
 
 
-def _generated(
-    part: Part, sizes: Sizes, factor: float, fixed_edges: list[tuple[int, float]]
-) -> tuple[Body, Ints]:
-    """The mesh, as `_body` has it, of the first algorithms that make no poor elements, or the best.
+def _algorithms(part: Part) -> list[tuple[int, int]]:
+    """Algorithms for surface and volume, in the order they are tried.
 
     Raises:
-        SceneError: none makes a mesh.
+        SceneError: the tip of a cone is too sharp for all of them.
     """
-    best, quality, fault = None, -math.inf, unmeshable(part.name, "")
-    for algorithms in ALGORITHMS:
-        try:
-            _generate(part, sizes, factor, fixed_edges, algorithms)
-            made = _body(part)
-        except SceneError as error:
-            fault = error
+    sharpest = min(_tips(), default=None)
+    if sharpest is not None and sharpest < SHARPEST:
+        raise SceneError(
+            f"{part.name} has a cone with a sharp tip, whose half angle is {sharpest:.3g} degrees; "
+            f"tips from {SHARPEST:g} degrees on can be meshed: cut the tip off or round it"
+        )
+    plane = FRONTAL if sharpest is None else PLANE_DELAUNAY
+    return [(plane, DELAUNAY), (plane, HXT)]
+
+
+def _tips() -> Iterator[float]:
+    """Half angles in degrees of the tips of cones."""
+    for _, face in gmsh.model.getEntities(2):
+        if gmsh.model.getType(2, face) != "Cone":
             continue
-        worst = float(qualities(made[0].points, made[0].cells).min())
-        if worst > POOR:
-            return made
-        if worst > quality:
-            best, quality = made, worst
-    if best is None:
-        raise fault
-    return best
+        borders = gmsh.model.getBoundary([(2, face)], combined=False, oriented=False)
+        for curve in (each for _, each in borders if gmsh.model.getType(1, each) == "Unknown"):
+            # a curve without length
+            point = gmsh.model.getBoundary([(1, curve)], combined=False, oriented=False)[0][1]
+            tip = np.array(gmsh.model.getValue(0, point, []))
+            (u, v), (_, w) = gmsh.model.getParametrizationBounds(2, face)
+            at = [gmsh.model.getValue(2, face, [u + turn, 0.5 * (v + w)]) for turn in (0.0, np.pi)]
+            one, other = (np.array(each) - tip for each in at)
+            cosine = one @ other / (np.linalg.norm(one) * np.linalg.norm(other))
+            yield float(0.5 * np.degrees(np.arccos(cosine)))
 
 
 def _generate(

@@ -88,8 +88,9 @@ def _from_cad(scene: BodyScene, path: Path, factor: float) -> Meshed:
     found = volume(made.body.points, made.body.cells)
     if abs(found - made.volume) > VOLUME_ERROR * made.volume:
         raise SolverError(
-            f"the mesh of {made.part.name} has the volume {found:.6g} m^3, the part {made.volume:.6g} "
-            f"m^3: more than {100 * VOLUME_ERROR:g} % apart; set body.element_size to a smaller one"
+            f"the mesh of {made.part.name} has the volume {found:.6g} m^3, the part "
+            f"{made.volume:.6g} m^3: more than {100 * VOLUME_ERROR:g} % apart; set "
+            "body.element_size to a smaller one"
         )
     contacts = {name: made.contacts.get(name) for name in ("outer", "inner")}
     about = {"cad_volume": made.volume, "size_scale": made.scale}

@@ -80,6 +80,9 @@ def load(path: Path, unit: float | None) -> Part:
     gmsh.option.setNumber("Geometry.OCCScaling", replaced / own if replaced and own else 1.0)
     try:
         gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
+        if suffix in (".iges", ".igs"):
+            # it has faces alone, which are sewn
+            gmsh.model.occ.healShapes()
         gmsh.model.occ.synchronize()
     except Exception as error:
         raise SceneError(f"body.file {path} cannot be read as {suffix}: {error}") from error

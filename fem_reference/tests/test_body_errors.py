@@ -77,6 +77,10 @@ def ball() -> None:
     gmsh.model.occ.addSphere(0, 0, 0, 5)
 
 
+def sharp_cone() -> None:
+    gmsh.model.occ.addCone(0, 0, 0, 0, 0, 30, 8, 0)
+
+
 def shell() -> None:
     gmsh.model.occ.addDisk(0, 0, 0, 10, 10)
 
@@ -116,6 +120,10 @@ CASES: dict[str, tuple[Callable[[Path], Path], dict[str, Any], str]] = {
     "no deck": (lambda f: written(f, "a.inp", "hello"), {}, r"no \*NODE"),
     "two solids": (lambda f: write_cad(f / "a.step", two_solids), CAD, "has 2 solids; one is need"),
     "no solid": (lambda f: write_cad(f / "a.step", shell), CAD, "has no solids; one is needed"),
+    "sharp tip": (
+        lambda f: write_cad(f / "a.step", sharp_cone), CAD | {"outer": [0.0, 0.0, 0.0]},
+        "half angle is 14.9 degrees; tips from 25 degrees",
+    ),
     "missing face": (named_plate, CAD | {"outer": "topp"}, "it has 'top', 'bottom', 'rim'"),
     "above CAD": (
         named_plate, CAD | {"outer": [0.0, 0.0, 0.003]}, "is 0.001 m away .* half an element",

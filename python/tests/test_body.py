@@ -54,7 +54,8 @@ gmsh.model.occ.fragment(boxes[:1], boxes[1:])
 gmsh.model.occ.synchronize()
 for tag, name in ((1, "left"), (2, "right")):
     gmsh.model.addPhysicalGroup(3, [tag], name=name)
-base = [tag for _, tag in gmsh.model.getEntities(2) if gmsh.model.occ.getCenterOfMass(2, tag)[2] == 0]
+faces = [tag for _, tag in gmsh.model.getEntities(2)]
+base = [tag for tag in faces if gmsh.model.occ.getCenterOfMass(2, tag)[2] == 0]
 gmsh.model.addPhysicalGroup(2, base, name="base")
 gmsh.option.setNumber("Mesh.MeshSizeMax", 1.2)
 gmsh.model.mesh.generate(3)
