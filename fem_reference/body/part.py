@@ -25,6 +25,8 @@ COARSE_ELEMENTS = 24
 PER_CIRCLE = 16
 """Its elements around a circle."""
 TRIANGLE6 = 9
+SEWN = 1e-4
+"""Largest gap between the faces of an IGES file, in `UNIT`."""
 NEAR = 0.05
 """Distance of a face from the first mesh, over its elements, that is possible."""
 
@@ -82,7 +84,7 @@ def load(path: Path, unit: float | None) -> Part:
         gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
         if suffix in (".iges", ".igs"):
             # it has faces alone, which are sewn
-            gmsh.model.occ.healShapes()
+            gmsh.model.occ.healShapes(tolerance=SEWN)
         gmsh.model.occ.synchronize()
     except Exception as error:
         raise SceneError(f"body.file {path} cannot be read as {suffix}: {error}") from error
