@@ -99,7 +99,7 @@ def _from_cad(scene: BodyScene, path: Path, factor: float) -> Meshed:
 
 def _from_mesh(scene: BodyScene, path: Path, factor: float) -> Meshed:
     source, unit = read_mesh(path), scene.body.unit or 1.0
-    body = body_of(source, unit, path.name)
+    body = body_of(source, scene.body.unit, path.name)
     fixed = fixed_mask(
         body, [place(each, f"body.fixed[{k}]") for k, each in enumerate(scene.body.fixed)]
     )

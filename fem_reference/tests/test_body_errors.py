@@ -98,6 +98,11 @@ CASES: dict[str, tuple[Callable[[Path], Path], dict[str, Any], str]] = {
     ),
     "two parts": (lambda f: changed(f, two_parts), CENTRE, "2 parts that share no faces"),
     "millimetres": (plate_mesh, {"unit": None}, r"66 x 66 x 2 m \(millimetres .* set body.unit"),
+    "a unit of metres nobody stated": (
+        lambda f: write_mesh(f / "p.msh", lambda: plate(0.75, 0.2), 0.3, 1),
+        {"unit": None, "outer": [0.0, 0.0, 0.2]},
+        r"1\.5 x 1\.5 x 0\.2 m \(millimetres .* between 2e-05 and 1 m: set body.unit",
+    ),
     "too small": (plate_mesh, {"unit": 1e-9}, "largest side must lie between 2e-05 and 2 m"),
     "missing name": (
         plate_mesh, {"outer": "tpo"}, "outer.at is 'tpo', .* does not have; it has 'top'",

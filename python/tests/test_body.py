@@ -157,6 +157,60 @@ def test_a_plate_given_as_step_is_the_circular_plate(
     assert abs(ours["first_frequency"] / truth["first_frequency"] - 1.0) < 0.005
 
 
+def test_model_c_of_an_off_centre_impact_is_within_the_reference_s_uncertainty(
+    tmp_path: Path,
+) -> None:
+    """The stored three-dimensional finite-element solution is independent of model C's mesh."""
+    ours = json.loads(run(tmp_path, "-q", "reduced", "off-centre", "--model", "C", "--json")[0])
+    truth = json.loads(run(tmp_path, "-q", "reference", "off-centre", "--json")[0])
+    for key in ("efficiency", "outer_force_peak", "inner_force_peak", "outer_velocity_final"):
+        assert abs(ours[key] - truth[key]) < truth["uncertainty"][key], key
+    assert ours["model"] == "C" and 0.0 < ours["mesh_error"] < 0.01
+    said = run(
+        tmp_path, "reduced", "off-centre", "--model", "C", "--modes", "25", "--json", status=2
+    )[1]
+    assert "24 modes at most" in said, said
+
+
+def test_model_c_of_an_off_centre_impact_needs_a_clamped_or_free_edge(tmp_path: Path) -> None:
+    """A free plate keeps the momentum; a simply supported one is refused by name."""
+    text = f"""
+name = "beside"
+kind = "plate-impact"
+{STEEL}
+[plate]
+radius    = "16 mm"
+thickness = "2 mm"
+edge      = "EDGE"
+material  = "steel"
+[outer]
+kind     = "sphere"
+radius   = "6 mm"
+material = "steel"
+speed    = "550 mm/s"
+offset   = "0.1 mm"
+[inner]
+kind     = "sphere"
+radius   = "6 mm"
+material = "steel"
+"""
+    (tmp_path / "beside.toml").write_text(text.replace("EDGE", "simply-supported"))
+    said = run(tmp_path, "reduced", "beside.toml", "--model", "C", status=12)[1]
+    assert "outer.offset" in said and "clamped or free" in said, said
+    (tmp_path / "beside.toml").write_text(text.replace("EDGE", "free"))
+    beside = json.loads(run(tmp_path, "-q", "reduced", "beside.toml", "--model", "C", "--json")[0])
+    (tmp_path / "centred.toml").write_text(
+        text.replace("EDGE", "free").replace('offset   = "0.1 mm"', "")
+    )
+    centred = json.loads(
+        run(tmp_path, "-q", "reduced", "centred.toml", "--model", "C", "--json")[0]
+    )
+    # so near the centre it is the axisymmetric model C, another discretisation
+    for key in ("efficiency", "outer_force_peak", "inner_force_peak"):
+        assert beside[key] == pytest.approx(centred[key], rel=0.01), key
+    assert beside["momentum_residual"] < 1e-9
+
+
 def test_a_mesh_of_somebody_s_own_is_struck_seen_and_swept(block: Path) -> None:
     """Linear tetrahedra in mm, a named face; frequencies, page, sweep, uncertainty, restitution."""
     body = 'file = "block.msh"\nunit = "mm"\nfixed = ["base"]'

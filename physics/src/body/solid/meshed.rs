@@ -59,6 +59,7 @@ pub struct ContactInfo {
 /// What models need of the description of a mesh.
 #[derive(Deserialize)]
 struct BodyMeshInfo {
+    bounding_box: [[f64; 3]; 2],
     contacts: Contacts,
     materials: Vec<String>,
 }
@@ -96,6 +97,15 @@ impl BodyMesh {
             return Err(unusable(path, "has cells whose material is not described"));
         }
         Ok(Self { mesh, fixed, materials, material_of_cell })
+    }
+
+    /// Lengths in m of the box around the body, as the description of the mesh file at `path` has it.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if it can't be read.
+    pub fn lengths(path: &Path) -> Result<[f64; 3]> {
+        let [least, most] = description(path)?.bounding_box;
+        Ok([0, 1, 2].map(|c| most[c] - least[c]))
     }
 
     /// The contacts that the description of the mesh file at `path` names: that of the outer body, and of the inner one if it has one.

@@ -215,6 +215,24 @@ pub type Mesher = fn(&MeshRequest) -> Result<PathBuf>;
 
 static MESHER: OnceLock<Mesher> = OnceLock::new();
 
+/// Announces that a body of so many unknowns is set up now, or refuses it for want of memory.
+pub type Announcer = Box<dyn Fn(usize) -> Result<()> + Send + Sync>;
+
+static ANNOUNCER: OnceLock<Announcer> = OnceLock::new();
+
+/// Says who announces set-ups of bodies; without, nobody does. The first call counts.
+pub fn set_announcer(announcer: Announcer) {
+    let _ = ANNOUNCER.set(announcer);
+}
+
+/// Announces a set-up.
+///
+/// # Errors
+/// Those of the announcer.
+pub(super) fn announce(unknowns: usize) -> Result<()> {
+    ANNOUNCER.get().map_or(Ok(()), |announcer| announcer(unknowns))
+}
+
 /// Says how meshes of bodies are made: this crate reads them only. The first call counts.
 pub fn set_mesher(mesher: Mesher) {
     let _ = MESHER.set(mesher);

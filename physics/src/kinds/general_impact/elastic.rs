@@ -1,6 +1,6 @@
 //! The struck body's reduced form, from its mesh and from a coarser one that shows what the mesh changes.
 
-use super::body::{Body, mesh};
+use super::body::{Body, announce, mesh};
 use crate::body::ModalBody;
 use crate::body::cache::Cache;
 use crate::body::memo::MemoList;
@@ -76,7 +76,10 @@ impl ElasticBody {
         let mut warnings = Vec::new();
         let is_cad = body.file.extension().is_some_and(|e| CAD.iter().any(|cad| e.eq_ignore_ascii_case(cad)));
         if body.unit.is_none() && !is_cad {
-            warnings.push("`body.unit` is not stated: the numbers of the mesh file are taken as m".into());
+            let [x, y, z] = BodyMesh::lengths(&path)?;
+            warnings.push(format!(
+                "`body.unit` is not stated: the numbers of the mesh file are taken as m, so that the body measures {x:.4} x {y:.4} x {z:.4} m"
+            ));
         }
         let coarse = mesh(&body.mesh_request(COARSER))
             .and_then(|path| reduced(body, &path, &BodyMesh::contacts(&path)?))
@@ -225,6 +228,7 @@ fn reduced(body: &Body, path: &Path, contacts: &[ContactInfo]) -> Result<StruckS
     let of = json!({ "struck": places(&points), "materials": ratios(body) });
     cached(path, of, || {
         let (BodyMesh { mesh, fixed, .. }, materials) = read(body, path)?;
+        announce(3 * fixed.iter().filter(|fixed| !**fixed).count())?;
         StruckSolid::new(&mesh, &materials, &fixed, &points)
     })
 }

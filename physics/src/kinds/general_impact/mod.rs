@@ -11,7 +11,9 @@ mod scene;
 mod soundness;
 
 pub(super) use between::off_centre_plate;
-pub use body::{Body, BodyMaterials, BodyPlace, Disc, MeshRequest, Mesher, content, set_mesher};
+pub use body::{
+    Announcer, Body, BodyMaterials, BodyPlace, Disc, MeshRequest, Mesher, content, set_announcer, set_mesher,
+};
 pub(super) use model::OF_COARSER;
 pub use model::difference_from_hertz;
 pub use results::{CURVES, ImpactQuantities};
