@@ -5,7 +5,9 @@ import math
 import os
 import subprocess
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 PROGRAM = os.environ["IMPACTCHECK_PROGRAM"]
@@ -244,6 +246,84 @@ def test_a_mesh_of_somebody_s_own_is_struck_seen_and_swept(block: Path) -> None:
     run(block, "reduced", "best/optimum.toml")
     run(block, "-q", "mesh", name, "--out", "part.vtu", "--page", "mesh.html")
     assert (block / "part.json").exists() and (block / "mesh.html").exists()
+
+
+BEAM = """
+import gmsh
+gmsh.initialize()
+gmsh.option.setNumber("General.Terminal", 0)
+gmsh.model.occ.addBox(-100, -1, -2, 200, 2, 2)
+gmsh.model.occ.synchronize()
+gmsh.write("beam.step")
+gmsh.finalize()
+"""
+
+
+def struck_beam(stiffness: float, mass: float, speed: float) -> tuple[float, float]:
+    """Restitution and force peak of a Hertz contact at the middle of a clamped steel beam.
+
+    Length 200 mm, 2 mm square; 24 symmetric modes of Euler and Bernoulli, slowed by Timoshenko's
+    shear (coefficient 5/6) and rotary inertia.
+    """
+    length, side, youngs, density = 0.2, 2e-3, 210e9, 7780.0
+    roots = (np.arange(0, 48, 2) + 1.5) * math.pi
+    # cos x cosh x = 1; only the first root differs from its asymptote by more than 1e-7
+    roots[0] = 4.730040745
+    number, gyration = roots / length, side**2 / 12.0
+    shear = 1.0 + 2.0 * 1.3 * 6.0 / 5.0
+    omega = number**2 * math.sqrt(youngs * gyration / density)
+    omega /= np.sqrt(1.0 + number**2 * gyration * shear)
+    ratio = (np.cosh(roots) - np.cos(roots)) / (np.sinh(roots) - np.sin(roots))
+    # cosh - ratio sinh at the middle, without the difference of large numbers
+    decay = np.exp(-0.5 * roots) + (1.0 - ratio) * np.sinh(0.5 * roots)
+    shape = decay - np.cos(0.5 * roots) + ratio * np.sin(0.5 * roots)
+    shape /= math.sqrt(density * side**2 * length)
+    place, own, moved, rate = 0.0, speed, np.zeros(24), np.zeros(24)
+    step, peak = 5e-9, 0.0
+    while True:
+        approach = place - shape @ moved
+        if approach < 0.0:
+            return -own / speed, peak
+        force = stiffness * approach**1.5
+        peak = max(peak, force)
+        own -= step * force / mass
+        place += step * own
+        rate += step * (shape * force - omega**2 * moved)
+        moved += step * rate
+
+
+def test_a_beam_under_impact_answers_as_the_modes_of_a_beam(tmp_path: Path) -> None:
+    """A soft body, and a hard one so short in contact that the model's few modes do not suffice."""
+    made(tmp_path, BEAM)
+    body = 'file = "beam.step"\nfixed = [["-100 mm", "0 mm", "-1 mm"], ["100 mm", "0 mm", "-1 mm"]]'
+    steel = (1.0 - 0.3**2) / 210e9
+
+    def both(material: str, own: float, radius: float, mass: float) -> tuple[dict[str, float], Any]:
+        outer = f'at = ["0 mm", "0 mm", "0 mm"]\nmass = {mass}\ntip_radius = {radius}'
+        name = scene(tmp_path, body, outer=outer, speed="100 mm/s")
+        text = (tmp_path / name).read_text()
+        text = text.replace('kind     = "sphere"\nradius   = "10 mm"', 'kind = "compact"')
+        head, tail = text.split("[outer]")
+        (tmp_path / name).write_text(head + SOFT + "[outer]" + tail.replace('"steel"', material, 1))
+        ours = json.loads(run(tmp_path, "-q", "reduced", name, "--json")[0])
+        return ours, struck_beam(4.0 / 3.0 / (steel + own) * math.sqrt(radius), mass, 0.1)
+
+    ours, (restitution, peak) = both('"soft"', (1.0 - 0.4**2) / 50e6, 4e-3, 3.217e-4)
+    assert ours["outer_restitution"] == pytest.approx(restitution, rel=2e-3)
+    assert ours["outer_force_peak"] == pytest.approx(peak, rel=2e-3)
+    assert ours["truncation_error"] < 1e-3
+    ours, (restitution, peak) = both('"steel"', steel, 1e-3, 3.259e-5)
+    assert abs(ours["outer_restitution"] - restitution) < ours["truncation_error"]
+    assert abs(ours["outer_force_peak"] / peak - 1.0) < ours["truncation_error"]
+    assert any("higher modes" in warning for warning in ours["warnings"])
+
+
+SOFT = """
+[materials.soft]
+youngs_modulus = "50 MPa"
+poisson_ratio  = 0.4
+density        = "1200 kg/m^3"
+"""
 
 
 def test_a_scene_is_begun_from_a_file(plate: Path) -> None:
