@@ -82,6 +82,7 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
         SceneError: the file, a name, a point or a size is not sound, or gmsh cannot mesh it.
     """
     part = disc_part(scene.body.disc) if scene.body.disc else load(path, scene.body.unit)
+    algorithms = _algorithms(part)
     skin, owner = coarse_skin(part)
     found = walls(skin)
     strikes = {
@@ -94,8 +95,8 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     sizes = chosen_sizes(found, contacts, largest)
     faces = _fixed_faces(scene, part, skin, owner, sizes)
     edges = _fixed_edges(faces, skin, owner, sizes)
-    for algorithms in _algorithms(part):
-        _generate(part, sizes, factor, edges, algorithms)
+    for pair in algorithms:
+        _generate(part, sizes, factor, edges, pair)
         body, number = _body(part)
         if qualities(body.points, body.cells).min() > POOR:
             break
