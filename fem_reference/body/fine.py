@@ -32,6 +32,8 @@ from .sizing import (
 )
 from .tets import volume
 
+DELAUNAY_SURFACE = 5
+"""gmsh's algorithm for surfaces that came as meshes; the frontal one takes minutes there."""
 TRIANGLE3, TETRAHEDRON4 = 2, 4
 """gmsh's numbers of elements."""
 EXACT_ZONES = 3.0
@@ -165,7 +167,9 @@ def _of_mesh(scene: BodyScene, path: Path, order: int, fineness: Fineness) -> Fi
         scaled = Walls(found.places / longest, found.thickness / longest, found.areas / longest**2)
         sizes = _far(scaled, fineness, longest, None)
         contacts = _at_contacts(fineness, points, strikes, longest)
-        mesh, _ = _unflat(path.name, order, longest, sizes, contacts, [], fineness)
+        # gmsh's curvature of a discrete surface is noise
+        flat = replace(fineness, per_circle=0.0)
+        mesh, _ = _unflat(path.name, order, longest, sizes, contacts, [], flat, DELAUNAY_SURFACE)
     exact = volume(body.points, body.cells)
     if abs(mesh.volume() - exact) > VOLUME_ERROR * exact:
         raise SolverError(
@@ -217,6 +221,7 @@ def _unflat(
     contacts: list[ContactSize],
     edges: list[tuple[int, float]],
     fineness: Fineness,
+    on_surface: int = FRONTAL,
 ) -> tuple[TetMesh, Ints]:
     """The mesh of gmsh's solid without flat elements, and the node of each of gmsh's tags.
 
@@ -226,7 +231,7 @@ def _unflat(
     reason, best = "", 0.0
     for smaller, algorithm in product(SMALLER, (DELAUNAY, HXT)):
         gmsh.model.mesh.clear()
-        for key, value in (("Algorithm", FRONTAL), ("Algorithm3D", algorithm), ("Optimize", 1)):
+        for key, value in (("Algorithm", on_surface), ("Algorithm3D", algorithm), ("Optimize", 1)):
             gmsh.option.setNumber(f"Mesh.{key}", value)
         gmsh.option.setNumber("Mesh.ElementOrder", 1)
         with tempfile.TemporaryDirectory() as folder:

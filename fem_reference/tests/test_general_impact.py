@@ -14,7 +14,6 @@ import pytest
 
 from fem_reference.body.curvature import frame
 from fem_reference.common.arrays import Floats
-from fem_reference.common.bodies import sphere_profile
 from fem_reference.common.errors import SceneError
 from fem_reference.common.fenicsx import alone
 from fem_reference.explicit.free_motions import FreeMotions, flexibility
@@ -80,7 +79,7 @@ def test_no_echo_of_a_wall_comes_back_during_the_contact() -> None:
 
 
 def tilted_block(path: Path) -> tuple[Path, Floats, Floats, Floats]:
-    """A block of 24 x 20 x 6 mm, turned, its upper face's middle (m) and normal, its lower one's."""
+    """A turned block, 24 x 20 x 6 mm; middle (m) and normal of its upper face, middle below."""
     axis = np.array([1.0, 2.0, 0.5]) / math.sqrt(5.25)
 
     def build() -> None:
@@ -125,8 +124,6 @@ def test_spheres_touch_at_the_points_along_the_normals(
         away = np.linalg.norm(nodes - side.strike.point, axis=1)
         exact = np.hypot(0.004 + gap, away) - 0.004
         assert np.abs(contact.gaps - exact).max() < 1e-12  # type: ignore[union-attr]
-        near = away < 1e-4
-        assert np.abs(exact - gap - sphere_profile(0.004, away))[near].max() < 1e-9
         assert away.min() < 1e-9
         assert side.body is not None
         sphere = model.model.elastic[side.body]
@@ -213,7 +210,7 @@ def test_supports_on_one_line_are_refused(tmp_path: Path) -> None:
     scene = parse_scene(document(body=body))
     expected = estimate(scene)
     sizes = Sizes(scene, expected.radii, expected.duration, 1.0)
-    with pytest.raises(SceneError, match="body.fixed"):
+    with pytest.raises(SceneError, match=r"body\.fixed"):
         impact_model(scene, sizes, path)
     with pytest.raises(SceneError, match="--body does not name its file"):
         impact_model(replace(scene), sizes, None)
