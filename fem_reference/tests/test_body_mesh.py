@@ -326,7 +326,7 @@ def test_a_med_file_is_read_as_msh_is(plate_msh: Path, tmp_path: Path) -> None:
     at, there = ours.contacts["outer"], theirs.contacts["outer"]
     assert at is not None and there is not None
     assert np.allclose(at["point"], there["point"], atol=1e-8)
-    assert one["edge_distance"] == pytest.approx(other["edge_distance"], rel=1e-6)
+    assert at["edge_distance"] == pytest.approx(there["edge_distance"], rel=1e-6)
 
 
 def test_linear_elements_get_straight_midside_nodes(tmp_path: Path) -> None:
