@@ -12,7 +12,7 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from ..common.errors import SceneError, SolverError
-from ..solid.mesh import MINIMUM_QUALITY, TetMesh, qualities, surface, tetrahedra
+from ..solid.mesh import MINIMUM_QUALITY, TetMesh, edge_lengths, qualities, surface, tetrahedra
 from .body import Body, body_of, fixed_mask
 from .cad import DELAUNAY, FRONTAL, HXT, StruckPart, largest_element, struck_part
 from .contact import described, located
@@ -40,6 +40,8 @@ EXACT_ZONES = 3.0
 """Distance from a contact up to which nodes are put on the exact body, over the fine zone."""
 TANGENT = 0.1
 """Directions in which the facets at a node have less than this share of their normals are left."""
+COARSER = 1.7
+"""Largest mean edge of the elements at a contact over the size requested."""
 SMALLER = (1.0, 0.98, 0.96)
 """Factors on the sizes away from the contacts that are tried until no element is flat."""
 
@@ -244,12 +246,23 @@ def _unflat(
             except Exception as error:
                 reason = str(error).strip()
                 continue
+        coarse = [c for c in contacts if not _is_fine(points, corners, c, unit)]
+        if coarse:
+            reason = "gmsh made larger elements at a contact"
+            continue
         quality = float(qualities(points, corners).min())
         if quality > MINIMUM_QUALITY:
             return tetrahedra("body", points, corners, order), number
         best = max(best, quality)
         reason = f"the best mesh has an element of quality {best:.2g}"
     raise SolverError(f"{name} cannot be meshed as finely as its reference needs: {reason}")
+
+
+def _is_fine(points: Floats, corners: Ints, contact: ContactSize, unit: float) -> bool:
+    """Whether the elements at a contact are about as small as they should be."""
+    node = int(np.argmin(np.linalg.norm(points - unit * contact.place, axis=1)))
+    edges = edge_lengths(points, corners[(corners == node).any(axis=1)])
+    return float(edges.mean()) <= COARSER * unit * contact.size
 
 
 def _linear(unit: float) -> tuple[Floats, Ints, Ints]:

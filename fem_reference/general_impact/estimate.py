@@ -24,8 +24,9 @@ CANDIDATE_ZONE = 1.8
 """Radius of the zone of nodes that may touch over the contact radius expected."""
 LARGEST = 0.25
 """Largest element of a sphere over its radius."""
-SLOPE = 0.3
-"""Growth of the element size per distance from the contact, at factor 1."""
+SLOPE, STEEPEST = 0.2, 0.6
+"""Growth of the element size per distance from the contact, at factor 1, and at any: above, gmsh
+takes an element that reaches to the contact for small enough."""
 WALLS = 0.3
 """Largest element over the thickness of a wall, at factor 1."""
 PER_WAVE = {1: 24.0, 2: 8.0}
@@ -116,6 +117,11 @@ class Sizes:
     duration: float
     factor: float
 
+    @property
+    def slope(self) -> float:
+        """Growth of the element size per distance from the contact."""
+        return min(SLOPE / self.factor, STEEPEST)
+
     def least(self, name: str) -> float:
         """Size at a contact, m."""
         return self.radii[name] / self.scene.elements_per_contact_radius / self.factor
@@ -137,7 +143,7 @@ class Sizes:
             (centre,),
             FINE_ZONE * self.radii[name],
             least,
-            SLOPE / self.factor,
+            self.slope,
             max(least, largest / self.factor),
         )
 
@@ -163,7 +169,7 @@ class Sizes:
         }
         return Fineness(
             contacts,
-            SLOPE / self.factor,
+            self.slope,
             WALLS / self.factor,
             self.per_wave(material) / self.factor,
             PER_CIRCLE * self.factor,
