@@ -87,6 +87,9 @@ class Steps:
     """s"""
     damping: float
     """Their alpha, from -1/3 to 0."""
+    changes: float | None = None
+    """Share of the contact's points of integration that may still open or close when an iteration
+    ends; None: CalculiX's own, 0.001."""
 
 
 @dataclass(frozen=True)
@@ -105,8 +108,11 @@ class Deck:
             lines += [f"N{part.name},{direction},{speed:.15g}" for direction, speed in moving]
         moved = [observer for observer in self.observers if observer.speed != 0.0]
         lines += [f"{observer.node},{AXIAL},{observer.speed:.15g}" for observer in moved]
+        lines.append("*STEP, INC=10000000")
+        if steps.changes is not None:
+            # its own values follow: random perturbation, softening, iterations
+            lines += ["*CONTROLS, PARAMETERS=CONTACT", f"{steps.changes:g},0.1,100,60"]
         lines += [
-            "*STEP, INC=10000000",
             f"*DYNAMIC, DIRECT, ALPHA={steps.damping:g}",
             f"{MILLI * steps.time_step:.12g},{MILLI * steps.end:.12g}",
         ]

@@ -99,3 +99,20 @@ def frequencies(path: Path) -> Floats:
     if not found:
         raise SolverError("CalculiX printed no eigenfrequencies")
     return np.array(found)
+
+
+def shapes(path: Path, sets: list[str]) -> Floats:
+    """(modes, sets) axial displacements of single nodes in the modes of a frequency step.
+
+    Raises:
+        SolverError: one is missing.
+    """
+    text = path.read_text(encoding="ascii", errors="replace") if path.exists() else ""
+    columns = []
+    for name in sets:
+        heading = rf"^ displacements \(.*\) for set {name} and time .*\n\s*\n(.*)$"
+        rows = [row.split() for row in re.findall(heading, text, re.MULTILINE)]
+        columns.append([float(row[3]) for row in rows if len(row) == 4])
+    if not columns[0] or len({len(column) for column in columns}) != 1:
+        raise SolverError("CalculiX printed no shapes of its modes")
+    return np.array(columns).T
