@@ -36,6 +36,8 @@ TRIANGLE3, TETRAHEDRON4 = 2, 4
 """gmsh's numbers of elements."""
 EXACT_ZONES = 3.0
 """Distance from a contact up to which nodes are put on the exact body, over the fine zone."""
+TANGENT = 0.1
+"""Directions in which the facets at a node have less than this share of their normals are left."""
 SMALLER = (1.0, 0.98, 0.96)
 """Factors on the sizes away from the contacts that are tried until no element is flat."""
 
@@ -132,6 +134,7 @@ def _of_cad(scene: BodyScene, path: Path, order: int, fineness: Fineness) -> Fin
         contacts = _at_contacts(fineness, made.points, strikes, UNIT)
         mesh, number = _unflat(path.name, order, UNIT, sizes, contacts, edges, fineness)
         facets = _facets_of_faces(mesh, number)
+        mesh = _levelled(mesh, facets)
         fixed = np.unique(np.concatenate([_NONE, *(facets[face].ravel() for face in faces)]))
         places = _on_faces(made, mesh, facets, fineness)
         return FineBody(mesh, fixed, made.part.volume(), strikes, places)
@@ -270,6 +273,39 @@ def _facets_of_faces(mesh: TetMesh, number: Ints) -> dict[int, Ints]:
         own = np.sort(number[nodes.astype(np.int64)].reshape(-1, 3), axis=1).tolist()
         found[face] = facets[[place_of[tuple(row)] for row in own]]
     return found
+
+
+def _levelled(mesh: TetMesh, facets: dict[int, Ints]) -> TetMesh:
+    """The mesh with flat facets that lie on the mean on the part's curved faces.
+
+    With corners on them they cut off what is convex and fill what is concave, so that a fillet
+    stiffens a wall. Facets of corners on the face are on the mean a third of the three distances
+    at the middles of their sides away from it; each corner is moved by what its facets want.
+    """
+    count = int(mesh.corners.max()) + 1
+    matrix, wanted = np.zeros((count, 3, 3)), np.zeros((count, 3))
+    for face, own in facets.items():
+        corners = own[:, :3]
+        a, b, c = (mesh.points[corners[:, k]] for k in range(3))
+        middles = 0.5 * np.stack([a + b, b + c, c + a], axis=1)
+        away = np.zeros_like(a)
+        if gmsh.model.getType(2, face) != "Plane":
+            flat = (middles / UNIT).ravel().tolist()
+            closest, _ = gmsh.model.getClosestPoint(2, face, flat)
+            away = (UNIT * np.array(closest).reshape(-1, 3, 3) - middles).mean(axis=1)
+        # of the length of twice the area: large facets count more
+        normal = np.cross(b - a, c - a)
+        unit = normal / np.linalg.norm(normal, axis=1, keepdims=True)
+        for k in range(3):
+            np.add.at(matrix, corners[:, k], normal[:, :, None] * unit[:, None, :])
+            np.add.at(wanted, corners[:, k], normal * (unit * away).sum(axis=1, keepdims=True))
+    on_surface = np.flatnonzero(matrix.any(axis=(1, 2)))
+    inverse = np.linalg.pinv(matrix[on_surface], rcond=TANGENT, hermitian=True)
+    points = mesh.points[:count].copy()
+    points[on_surface] += np.einsum("nij,nj->ni", inverse, wanted[on_surface])
+    if qualities(points, mesh.corners).min() <= MINIMUM_QUALITY:
+        return mesh
+    return tetrahedra(mesh.name, points, mesh.corners, mesh.order)
 
 
 def _near(mesh: TetMesh, nodes: Ints, point: Floats, fineness: Fineness, name: str) -> Ints:

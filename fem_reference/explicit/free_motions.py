@@ -62,7 +62,7 @@ class FreeMotions:
 
 
 def static_shape(loop: Loop, body: int, load: Floats, floating: FreeMotions) -> Floats:
-    """Displacement (3 n,) of a body under a load (3 n,), rigid motions apart (inertia relief), m."""
+    """Displacement (3 n,) of a body under a load (3 n,), rigid motions apart , m."""
     free = free_components(loop, body)
     tolerance = RELIEVED_TOLERANCE if floating.motions else CG_TOLERANCE
     return floating.out_of_motion(

@@ -30,7 +30,7 @@ WALLS = 0.5
 """Largest element over the thickness of a wall, at factor 1."""
 PER_WAVE = {1: 24.0, 2: 8.0}
 """Elements per shortest wavelength, by order."""
-PER_CIRCLE = 15.0
+PER_CIRCLE = 36.0
 """Elements around a circle, at factor 1."""
 WAVE_FREQUENCY = 3.0
 """Highest frequency resolved, times the Hertz duration: its pulse has less than 1 % beyond."""
