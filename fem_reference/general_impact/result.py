@@ -37,6 +37,13 @@ TARGETED = (
 )
 
 
+OF_SOME_SCENES = (
+    *("efficiency", "inner_velocity_final", "inner_force_peak", "inner_contact_end"),
+    *("inner_contacts", "inner_restitution", "inner_impulse", "first_frequency"),
+)
+"""Quantities that a scene may lack; its summary has them as null."""
+
+
 def curves(scene: Scene) -> tuple[Level | Force, ...]:
     """Those that the scene has."""
     return tuple(curve for curve in CURVES if scene.has(curve.name))
@@ -134,12 +141,11 @@ def _details(
         solver=solution.machine(),
         settings=solution.settings(),
         stress_times=solution.write_fields(folder),
-        summary={
-            **{
-                f"{name}_contacts": None if run.in_contact_at_end else contact.count
-                for name, contact in zip(scene.partners(), run.contacts, strict=True)
-            },
-            **({"source": "external", "model": program} if program else {}),
-        },
+        summary={name: None for name in OF_SOME_SCENES if not scene.has(name)}
+        | {
+            f"{name}_contacts": None if run.in_contact_at_end else contact.count
+            for name, contact in zip(scene.partners(), run.contacts, strict=True)
+        }
+        | ({"source": "external", "model": program} if program else {}),
         uncertainty=curve_uncertainty(curves(scene), bands),
     )
