@@ -43,15 +43,11 @@ def beam() -> None:
 
 def box() -> None:
     """A thin-walled box, open below, 20 x 16 x 10 mm, walls of 1.5 mm."""
-    shells = []
-    for wall, rounding in ((0.0, 2.5), (1.5, 1.0)):
-        solid = occ.addBox(wall, wall, 0, 20 - 2 * wall, 16 - 2 * wall, 10 - wall)
-        occ.synchronize()
-        faces = gmsh.model.getBoundary([(3, solid)], oriented=False)
-        lines = {line for _, line in gmsh.model.getBoundary(faces, combined=False, oriented=False)}
-        above = [line for line in lines if gmsh.model.getBoundingBox(1, line)[5] > 0.5]
-        shells.append(occ.fillet([solid], above, [rounding])[0])
-    occ.cut([shells[0]], [shells[1]])
+    outside = occ.addBox(0, 0, 0, 20, 16, 10)
+    below = edges((-1, -1, -1), (21, 17, 1))
+    others = [edge for edge in edges((-1, -1, -1), (21, 17, 11)) if edge not in below]
+    solid = occ.fillet([outside], others, [2])[0]
+    occ.cut([solid], [(3, occ.addBox(1.5, 1.5, 0, 17, 13, 8.5))])
 
 
 PARTS: dict[str, Callable[[], None]] = {

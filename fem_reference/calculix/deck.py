@@ -105,9 +105,9 @@ class Deck:
         lines = [*self._model(), "*INITIAL CONDITIONS, TYPE=VELOCITY"]
         for part in self.parts:
             moving = [(k, v) for k, v in enumerate(part.velocity, 1) if v != 0.0]
-            lines += [f"N{part.name},{direction},{speed:.15g}" for direction, speed in moving]
+            lines += [f"N{part.name},{direction},{_number(speed)}" for direction, speed in moving]
         moved = [observer for observer in self.observers if observer.speed != 0.0]
-        lines += [f"{observer.node},{AXIAL},{observer.speed:.15g}" for observer in moved]
+        lines += [f"{observer.node},{AXIAL},{_number(observer.speed)}" for observer in moved]
         lines.append("*STEP, INC=10000000")
         if steps.changes is not None:
             # its own values follow: random perturbation, softening, iterations
@@ -143,6 +143,12 @@ class Deck:
         return lines
 
 
+def _number(value: float) -> str:
+    """CalculiX reads 20 characters of a number; the exponent's last digit would be lost."""
+    exact = f"{value:.15g}"
+    return exact if len(exact) <= 20 else f"{value:.12g}"
+
+
 def _rows(values: Iterable[object], per_line: int) -> list[str]:
     """Values separated by commas; a line that goes on ends with one."""
     it = iter(values)
@@ -156,7 +162,7 @@ def _body(part: Part) -> list[str]:
     material = part.material
     lines = [f"*NODE, NSET=N{part.name}"]
     for number, (x, y, z) in part.nodes:
-        lines.append(f"{number},{MILLI * x:.15g},{MILLI * y:.15g},{MILLI * z:.15g}")
+        lines.append(f"{number},{_number(MILLI * x)},{_number(MILLI * y)},{_number(MILLI * z)}")
     for kind, elements in part.elements.items():
         if elements:
             lines.append(f"*ELEMENT, TYPE={kind}, ELSET=E{part.name}")
@@ -166,9 +172,9 @@ def _body(part: Part) -> list[str]:
         *lines,
         f"*MATERIAL, NAME=A{part.name}",
         "*ELASTIC",
-        f"{MEGA * material.youngs_modulus:.15g},{material.poisson_ratio:.15g}",
+        f"{_number(MEGA * material.youngs_modulus)},{_number(material.poisson_ratio)}",
         "*DENSITY",
-        f"{MEGA * material.density:.15g}",
+        f"{_number(MEGA * material.density)}",
         f"*SOLID SECTION, ELSET=E{part.name}, MATERIAL=A{part.name}",
     ]
 
