@@ -189,12 +189,13 @@ def test_the_first_frequency_is_one_that_the_contact_excites(tmp_path: Path) -> 
     at = [0.5 * length, 0.5 * width, height]
     made = on_mesh(parse_scene(document(file, [at], [])), file, 0.4)
     found = calculix.first_frequency(made, tmp_path / "modes")
-    nu, slender = STEEL["poisson_ratio"], (height / length) ** 2
+    steel = material(STEEL)
+    nu, slender = steel.poisson_ratio, (height / length) ** 2
     shear = 1.0 + 6.338 * (1.0 + 0.1408 * nu + 1.536 * nu**2) * slender
     factor = 1.0 + 6.585 * (1.0 + 0.0752 * nu + 0.8109 * nu**2) * slender - 0.868 * slender**2
     factor -= 8.340 * (1.0 + 0.2023 * nu + 2.173 * nu**2) * slender**2 / shear
-    mass = STEEL["density"] * length * width * height
-    stiffness = STEEL["youngs_modulus"] * width * height**3 / (0.9465 * length**3 * factor)
+    mass = steel.density * length * width * height
+    stiffness = steel.youngs_modulus * width * height**3 / (0.9465 * length**3 * factor)
     assert found == pytest.approx(math.sqrt(stiffness / mass), rel=5e-3)
 
 
@@ -202,13 +203,13 @@ def test_the_first_frequency_is_one_that_the_contact_excites(tmp_path: Path) -> 
 def test_a_small_impact_keeps_its_balances_and_agrees_with_the_explicit_solver(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A sphere on a free block, on one coarse mesh each."""
+    """A sphere on a block that stands on a face, on one coarse mesh each."""
     from mpi4py import MPI
 
-    file = write_cad(tmp_path / "block.step", cuboid(8, 10, 5))
-    scene = parse_scene(document(file, [[0.004, 0.005, 0.005]], []))
+    file = write_cad(tmp_path / "block.step", cuboid(8, 10, 6))
+    scene = parse_scene(document(file, [[0.004, 0.005, 0.006]], [[0.004, 0.005, 0.0]]))
     found = {}
-    for by, factor in ((calculix, 0.4), (solve, 0.3)):
+    for by, factor in ((calculix, 0.5), (solve, 0.5)):
         settings = Settings(0.9, tmp_path / by.__name__, 0.0, "test")
         solution = by.compute(scene, file, factor, settings, MPI.COMM_SELF, lambda *_: None)
         found[by] = quantities(scene, solution)
@@ -217,5 +218,5 @@ def test_a_small_impact_keeps_its_balances_and_agrees_with_the_explicit_solver(
         assert run.energy_residual < 5e-3
         assert not run.in_contact_at_end
         assert run.contacts[0].count == 1
-    for name, value in found[solve].items():
-        assert found[calculix][name] == pytest.approx(value, rel=0.03), name
+    for name in ("outer_restitution", "outer_force_peak", "outer_impulse", "outer_contact_end"):
+        assert found[calculix][name] == pytest.approx(found[solve][name], rel=0.02), name
