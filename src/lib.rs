@@ -48,6 +48,7 @@
 pub mod calibration;
 pub mod ci;
 pub mod cli;
+pub mod columns;
 pub mod comparison;
 pub mod coverage;
 pub mod curves;

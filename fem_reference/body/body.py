@@ -21,6 +21,8 @@ from .tets import qualities, volume
 
 LARGEST, SMALLEST = 2.0, 20e-6
 """Bounds of the largest side of a body's bounding box, m."""
+LARGEST_IN_METRES = 1.0
+"""The same of a mesh whose unit is not stated: larger ones are rather in millimetres."""
 FIXABLE = ("surface", "nodes", "curve", "point", "elements", "volume")
 
 
@@ -95,28 +97,32 @@ def bounding_box(points: Floats) -> list[list[float]]:
     return [points.min(axis=0).tolist(), points.max(axis=0).tolist()]
 
 
-def check_size(box: list[list[float]]) -> None:
+def check_size(box: list[list[float]], largest: float = LARGEST) -> None:
     """Refuse a body whose unit of length cannot be right.
+
+    Args:
+        box: its bounding box, m.
+        largest: side that is possible, m.
 
     Raises:
         SceneError: the bounding box is too large or too small.
     """
     sides = np.subtract(box[1], box[0])
-    if not (sides.max() <= LARGEST and sides.max() >= SMALLEST):
+    if not SMALLEST <= sides.max() <= largest:
         what = " x ".join(f"{side:.4g}" for side in sides)
-        question = "millimetres taken for metres" if sides.max() > LARGEST else "metres for others"
+        question = "millimetres taken for metres" if sides.max() > largest else "metres for others"
         raise SceneError(
             f"the body's bounding box is {what} m ({question}?); its largest side must lie between "
-            f"{SMALLEST:g} and {LARGEST:g} m: set body.unit"
+            f"{SMALLEST:g} and {largest:g} m: set body.unit"
         )
 
 
-def body_of(source: MeshFile, unit: float, name: str) -> Body:
+def body_of(source: MeshFile, unit: float | None, name: str) -> Body:
     """The body that a mesh file describes.
 
     Args:
         source: the file's content.
-        unit: metres per number of the file.
+        unit: metres per number of the file; None: not stated, metres.
         name: of the file, for messages.
 
     Raises:
@@ -128,13 +134,13 @@ def body_of(source: MeshFile, unit: float, name: str) -> Body:
             f"{name} has no volume elements ({have or 'no elements'}); a solid mesh is needed "
             "(gmsh leaves out what belongs to no physical group: give the volume one)"
         )
-    points = source.points * unit
+    points = source.points * (unit or 1.0)
     if not np.isfinite(points).all():
         raise SceneError(f"{name} has nodes without finite coordinates")
     points, cells, owner = quadratic(points, source.solids)
     _check_nodes(cells, name)
     body = _compressed(points, cells, owner, source)
-    check_size(bounding_box(body.points))
+    check_size(bounding_box(body.points), LARGEST if unit else LARGEST_IN_METRES)
     body = replace(body, cells=_all_turned(body))
     check_quality(body, name)
     check_one_part(body, name)

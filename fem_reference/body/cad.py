@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from .body import Body, check_one_part, check_quality, require_near
 from .cells import GMSH_NODES
 from .contact import EDGE_ELEMENTS, described
 from .curvature import Curvature, of_face
-from .part import TRIANGLE6, UNIT, Part, coarse_skin, load, on_face, unmeshable
+from .part import TRIANGLE6, UNIT, Part, coarse_skin, disc_part, load, on_face, unmeshable
 from .scene import BodyScene, Place, place
 from .sizing import (
     CIRCLES,
@@ -35,9 +36,11 @@ from .sizing import (
 from .skin import Skin, SurfacePoint
 from .tets import qualities
 
-FRONTAL, DELAUNAY, HXT = 6, 1, 10
-"""gmsh's numbers of its algorithms, the first in two dimensions. Delaunay on its own triangles left
-flat tetrahedra in a thin plate."""
+FRONTAL, PLANE_DELAUNAY, DELAUNAY, HXT = 6, 5, 1, 10
+"""gmsh's numbers of its algorithms, the first two in two dimensions. Delaunay on its own triangles
+left flat tetrahedra in a thin plate, but frontal triangles overlap at the tip of a cone."""
+SHARPEST = 25.0
+"""Least half angle of a cone's tip, degrees: gmsh's meshes of sharper ones overlap or never end."""
 POOR = 0.01
 """Quality below which the next algorithm is tried."""
 TETRAHEDRON10 = 11
@@ -88,8 +91,8 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     sizes = chosen_sizes(made.walls, contacts, largest_element(scene))
     faces = made.fixed_faces(scene, sizes)
     edges = made.fixed_edges(faces, sizes)
-    for algorithm in (DELAUNAY, HXT):
-        _generate(part, sizes, factor, edges, algorithm)
+    for algorithms in _algorithms(part):
+        _generate(part, sizes, factor, edges, algorithms)
         body, number = _body(part)
         if qualities(body.points, body.cells).min() > POOR:
             break
@@ -143,7 +146,7 @@ def struck_part(scene: BodyScene, path: Path) -> StruckPart:
     Raises:
         SceneError: the file, a name or a point is not sound.
     """
-    part = load(path, scene.body.unit)
+    part = disc_part(scene.body.disc) if scene.body.disc else load(path, scene.body.unit)
     skin, owner = coarse_skin(part)
     found = walls(skin)
     strikes = {
@@ -244,14 +247,51 @@ def _fixed_edges(
     return found
 
 
+def _algorithms(part: Part) -> list[tuple[int, int]]:
+    """Algorithms for surface and volume, in the order they are tried.
+
+    Raises:
+        SceneError: the tip of a cone is too sharp for all of them.
+    """
+    sharpest = min(_tips(), default=None)
+    if sharpest is not None and sharpest < SHARPEST:
+        raise SceneError(
+            f"{part.name} has a cone with a sharp tip, whose half angle is {sharpest:.3g} degrees; "
+            f"tips from {SHARPEST:g} degrees on can be meshed: cut the tip off or round it"
+        )
+    plane = FRONTAL if sharpest is None else PLANE_DELAUNAY
+    return [(plane, DELAUNAY), (plane, HXT)]
+
+
+def _tips() -> Iterator[float]:
+    """Half angles in degrees of the tips of cones."""
+    for _, face in gmsh.model.getEntities(2):
+        if gmsh.model.getType(2, face) != "Cone":
+            continue
+        borders = gmsh.model.getBoundary([(2, face)], combined=False, oriented=False)
+        for curve in (each for _, each in borders if gmsh.model.getType(1, each) == "Unknown"):
+            # a curve without length
+            point = gmsh.model.getBoundary([(1, curve)], combined=False, oriented=False)[0][1]
+            tip = np.array(gmsh.model.getValue(0, point, []))
+            (u, v), (_, w) = gmsh.model.getParametrizationBounds(2, face)
+            at = [gmsh.model.getValue(2, face, [u + turn, 0.5 * (v + w)]) for turn in (0.0, np.pi)]
+            one, other = (np.array(each) - tip for each in at)
+            cosine = one @ other / (np.linalg.norm(one) * np.linalg.norm(other))
+            yield float(0.5 * np.degrees(np.arccos(cosine)))
+
+
 def _generate(
-    part: Part, sizes: Sizes, factor: float, fixed_edges: list[tuple[int, float]], algorithm: int
+    part: Part,
+    sizes: Sizes,
+    factor: float,
+    fixed_edges: list[tuple[int, float]],
+    algorithms: tuple[int, int],
 ) -> None:
     """Mesh the part in gmsh."""
     gmsh.model.mesh.clear()
     for key, value in (
-        ("Mesh.Algorithm", FRONTAL),
-        ("Mesh.Algorithm3D", algorithm),
+        ("Mesh.Algorithm", algorithms[0]),
+        ("Mesh.Algorithm3D", algorithms[1]),
         ("Mesh.Optimize", 1),
         ("Mesh.ElementOrder", 2),
         ("Mesh.HighOrderOptimize", 1),

@@ -18,7 +18,7 @@ from ..common.mesh_files import require_replaceable
 from ..common.output import write_json
 from .body import Body, body_of, bounding_box, fixed_mask
 from .cad import VOLUME_ERROR, mesh_part
-from .contact import described, located, require_inside_face
+from .contact import EDGE_ELEMENTS, described, located, require_inside_face
 from .files import CAD, checked, gmsh_session, read_mesh
 from .part import load
 from .remesh import remeshed
@@ -76,6 +76,8 @@ def meshed(scene: BodyScene, factor: float) -> Meshed:
         SolverError: a mesh could not be made coarser.
     """
     path = Path(scene.body.path)
+    if scene.body.disc:
+        return _from_cad(scene, path, factor)
     return (_from_cad if checked(path) in CAD else _from_mesh)(scene, path, factor)
 
 
@@ -86,8 +88,9 @@ def _from_cad(scene: BodyScene, path: Path, factor: float) -> Meshed:
     found = volume(made.body.points, made.body.cells)
     if abs(found - made.volume) > VOLUME_ERROR * made.volume:
         raise SolverError(
-            f"the mesh of {path.name} has the volume {found:.6g} m^3, the part {made.volume:.6g} "
-            f"m^3: more than {100 * VOLUME_ERROR:g} % apart; set body.element_size to a smaller one"
+            f"the mesh of {made.part.name} has the volume {found:.6g} m^3, the part "
+            f"{made.volume:.6g} m^3: more than {100 * VOLUME_ERROR:g} % apart; set "
+            "body.element_size to a smaller one"
         )
     contacts = {name: made.contacts.get(name) for name in ("outer", "inner")}
     about = {"cad_volume": made.volume, "size_scale": made.scale}
@@ -96,7 +99,7 @@ def _from_cad(scene: BodyScene, path: Path, factor: float) -> Meshed:
 
 def _from_mesh(scene: BodyScene, path: Path, factor: float) -> Meshed:
     source, unit = read_mesh(path), scene.body.unit or 1.0
-    body = body_of(source, unit, path.name)
+    body = body_of(source, scene.body.unit, path.name)
     fixed = fixed_mask(
         body, [place(each, f"body.fixed[{k}]") for k, each in enumerate(scene.body.fixed)]
     )
@@ -142,6 +145,30 @@ def material_index(body: Body, materials: dict[str, str]) -> tuple[Ints, list[st
     return index, names
 
 
+def material_at(
+    body: Body, name: str, contact: dict[str, Any], index: Ints, names: list[str]
+) -> dict[str, Any]:
+    """The material of the element at a contact, and the distance in m to the nearest other one.
+
+    Raises:
+        SceneError: the circle of pressure does not fit into the one material.
+    """
+    if len(names) < 2:
+        return {"material": names[0] if names else None, "material_distance": None}
+    point, size = np.array(contact["point"]), contact["element_size"]
+    face = body.skin.faces[body.skin.nearest(point).face, :3]
+    own = index[np.isin(body.cells[:, :4], face).sum(axis=1) == 3][0]
+    others = body.points[np.unique(body.cells[index != own])]
+    distance = float(np.linalg.norm(others - point, axis=1).min())
+    if distance < EDGE_ELEMENTS * size:
+        raise SceneError(
+            f"{name}.at is {distance:.3g} m away from another material; at least "
+            f"{EDGE_ELEMENTS:g} elements ({EDGE_ELEMENTS * size:.3g} m) are needed for the circle "
+            "of pressure: move it, or refine the mesh there"
+        )
+    return {"material": names[own], "material_distance": distance}
+
+
 def _volumes(body: Body) -> list[str]:
     return [group.name for group in body.groups if group.kind in ("volume", "elements")]
 
@@ -169,6 +196,9 @@ def write_body_mesh(path: Path, scene: BodyScene, factor: float) -> None:
         raise SceneError(f"--size-factor is {factor:g}; it must lie between 0.25 and 10")
     made = meshed(scene, factor)
     material, materials = material_index(made.body, scene.body.material_names())
+    for name, contact in made.contacts.items():
+        if contact:
+            contact |= material_at(made.body, name, contact, material, materials)
     grid = meshio.Mesh(
         made.body.points,
         [("tetra10", made.body.cells.astype(np.int32))],

@@ -12,7 +12,8 @@ from ..common.arrays import Floats, Ints
 from ..common.errors import SceneError
 from .body import check_size
 from .files import checked
-from .scene import Place
+from .scene import Disc, Place
+from .sizing import SMALLEST_SHARE
 from .skin import Skin
 from .source import Group, named
 from .step_text import read_step
@@ -24,6 +25,8 @@ COARSE_ELEMENTS = 24
 PER_CIRCLE = 16
 """Its elements around a circle."""
 TRIANGLE6 = 9
+SEWN = 1e-4
+"""Largest gap between the faces of an IGES file, in `UNIT`."""
 NEAR = 0.05
 """Distance of a face from the first mesh, over its elements, that is possible."""
 
@@ -79,6 +82,9 @@ def load(path: Path, unit: float | None) -> Part:
     gmsh.option.setNumber("Geometry.OCCScaling", replaced / own if replaced and own else 1.0)
     try:
         gmsh.model.occ.importShapes(str(path), highestDimOnly=False)
+        if suffix in (".iges", ".igs"):
+            # it has faces alone, which are sewn
+            gmsh.model.occ.healShapes(tolerance=SEWN)
         gmsh.model.occ.synchronize()
     except Exception as error:
         raise SceneError(f"body.file {path} cannot be read as {suffix}: {error}") from error
@@ -96,6 +102,14 @@ def load(path: Path, unit: float | None) -> Part:
         )
     groups = _groups(solids[0], text.faces if text else [])
     return Part(path.name, solids[0], unit, groups)
+
+
+def disc_part(disc: Disc) -> Part:
+    """A circular plate in gmsh's model."""
+    thickness, radius = disc.thickness / UNIT, disc.radius / UNIT
+    solid = gmsh.model.occ.addCylinder(0.0, 0.0, 0.0, 0.0, 0.0, thickness, radius)
+    gmsh.model.occ.synchronize()
+    return Part("the plate", solid, UNIT, _groups(solid, []))
 
 
 def _groups(solid: int, labels: list[tuple[str, str]]) -> list[Group]:
@@ -140,7 +154,9 @@ def coarse_skin(part: Part) -> tuple[Skin, Ints]:
     """
     check_size(part.box())
     least, most = (np.array(each) for each in part.box())
-    gmsh.option.setNumber("Mesh.MeshSizeMax", float((most - least).max()) / UNIT / COARSE_ELEMENTS)
+    side = float((most - least).max()) / UNIT
+    gmsh.option.setNumber("Mesh.MeshSizeMax", side / COARSE_ELEMENTS)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", SMALLEST_SHARE * side)
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", PER_CIRCLE)
     gmsh.option.setNumber("Mesh.ElementOrder", 2)
     gmsh.option.setNumber("Mesh.HighOrderOptimize", 0)
@@ -152,6 +168,7 @@ def coarse_skin(part: Part) -> tuple[Skin, Ints]:
     skin, faces = _skin(part.solid)
     gmsh.model.mesh.clear()
     gmsh.option.setNumber("Mesh.MeshSizeMax", 1e22)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", 0.0)
     return skin, faces
 
 

@@ -16,6 +16,14 @@ from ..common.errors import SceneError
 
 
 @dataclass(frozen=True)
+class Disc:
+    """A circular plate about the z axis, from z = 0 to its thickness."""
+
+    radius: float
+    thickness: float
+
+
+@dataclass(frozen=True)
 class BodyFile:
     """The file of a body, and what is said of it."""
 
@@ -28,6 +36,8 @@ class BodyFile:
     """Largest element of a CAD part, m."""
     materials: object
     """Material (a name) by group of volumes; None: one material."""
+    disc: Disc | None = None
+    """What is meshed instead of a file."""
 
     def material_names(self) -> dict[str, str]:
         """Material by group of volumes; empty: one material."""
@@ -72,6 +82,9 @@ def parse_body_scene(document: Any) -> BodyScene:
         value = getattr(scene.body, key)
         if value is not None and not value > 0.0:
             raise SceneError(f"body.{key} is {value:g} m; it must be above 0")
+    disc = scene.body.disc
+    if disc and not (disc.radius > 0.0 and disc.thickness > 0.0):
+        raise SceneError(f"body.disc is {disc}; radius and thickness must be above 0")
     groups = scene.body.materials
     if groups is not None and not (
         isinstance(groups, dict) and all(isinstance(each, str) for each in groups.values())

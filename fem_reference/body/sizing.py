@@ -43,6 +43,8 @@ DOFS_PER_CUBE = 14.4
 RAYS = 2000
 GRID = 40
 """Intervals of the grid along the body's longest side."""
+SMALLEST_SHARE = 1e-3
+"""Smallest element over the body's longest side: at the tip of a cone curvature has no bound."""
 PER_CIRCLE, LEAST_PER_CIRCLE = 10.0, 6.0
 """Elements around a circle at size factor 1, and at any."""
 OBLIQUE = 0.5
@@ -187,6 +189,10 @@ def set_sizes(
     contacts = [replace(c, size=factor * c.size, zone=factor * c.zone) for c in sizes.contacts]
     edges = [(curve, factor * size) for curve, size in fixed_edges]
     grid = grid_field(folder / "sizes.txt", sizes.places, lambda at: factor * sizes.at(at))
+    side = float(np.ptp(sizes.places, axis=0).max())
+    requested = [each.size for each in contacts] + [size for _, size in edges]
+    smallest = min(SMALLEST_SHARE * side, *(0.5 * size for size in requested))
+    gmsh.option.setNumber("Mesh.MeshSizeMin", smallest)
     set_fields([grid], contacts, edges, max(PER_CIRCLE / factor, LEAST_PER_CIRCLE))
 
 

@@ -26,7 +26,7 @@ LARGEST = 0.25
 """Largest element of a sphere over its radius."""
 SLOPE = 0.3
 """Growth of the element size per distance from the contact, at factor 1."""
-WALLS = 0.5
+WALLS = 0.35
 """Largest element over the thickness of a wall, at factor 1."""
 PER_WAVE = {1: 24.0, 2: 8.0}
 """Elements per shortest wavelength, by order."""

@@ -254,3 +254,48 @@ def test_brep_counts_in_the_unit_given(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="millimetres taken for metres"):
         made(path, [0.0, 0.0, 0.002])
     assert made(path, [0.0, 0.0, 0.002], unit=1e-3).body.cells.size > 0
+
+
+def drilled() -> None:
+    """A block with a blind hole of 6 mm, whose bottom is the cone of a drill."""
+    occ = gmsh.model.occ
+    block = occ.addBox(-15, -15, -20, 30, 30, 20)
+    hole = occ.addCylinder(0, 0, -10, 0, 0, 11, 3)
+    point = occ.addCone(0, 0, -10, 0, 0, -3 / math.tan(math.radians(59)), 3, 0)
+    drill, _ = occ.fuse([(3, hole)], [(3, point)])
+    occ.cut([(3, block)], drill)
+
+
+def cone() -> None:
+    gmsh.model.occ.addCone(0, 0, 0, 0, 0, 8, 8, 0)
+
+
+@pytest.mark.parametrize(
+    ("build", "at", "exact"),
+    [
+        (drilled, [0.009, 0.0, 0.0], 18_000 - 90 * math.pi - 9 * math.pi * 1.8026 / 3),
+        (cone, [0.0, 0.0, 0.0], math.pi * 8**3 / 3),
+    ],
+)
+def test_the_tip_of_a_cone_is_meshed(
+    tmp_path: Path, build: Callable[[], None], at: list[float], exact: float
+) -> None:
+    """Curvature has no bound there: without a smallest element the surface's mesh never ends."""
+    body = made(write_cad(tmp_path / "part.step", build), at, 2.0).body
+    assert 500 < body.cells.shape[0] < 40_000
+    assert volume(body.points, body.cells) == pytest.approx(1e-9 * exact, rel=3e-3)
+
+
+def test_iges_is_read_as_step_is(tmp_path: Path) -> None:
+    """IGES has faces alone, which are sewn to a solid."""
+    scene = {"fixed": [[0.033, 0.0, 0.001]]}
+    bodies = [
+        made(write_cad(tmp_path / f"plate.{ending}", plate), [0.0, 0.0, 0.002], **scene)
+        for ending in ("step", "iges")
+    ]
+    step, iges = ((each.body.points, each.body.cells) for each in bodies)
+    assert volume(*iges) == pytest.approx(volume(*step), rel=1e-4)
+    assert bodies[1].about["cad_volume"] == pytest.approx(math.pi * 33**2 * 2e-9, rel=1e-6)
+    radius = np.hypot(*bodies[1].body.points[:, :2].T)
+    assert np.array_equal(bodies[1].fixed, radius > 0.033 * (1.0 - 1e-7))
+    assert outer_of(bodies[1])["wall"] == pytest.approx(0.002, rel=1e-6)

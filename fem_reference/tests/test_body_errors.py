@@ -77,6 +77,10 @@ def ball() -> None:
     gmsh.model.occ.addSphere(0, 0, 0, 5)
 
 
+def sharp_cone() -> None:
+    gmsh.model.occ.addCone(0, 0, 0, 0, 0, 30, 8, 0)
+
+
 def shell() -> None:
     gmsh.model.occ.addDisk(0, 0, 0, 10, 10)
 
@@ -94,6 +98,11 @@ CASES: dict[str, tuple[Callable[[Path], Path], dict[str, Any], str]] = {
     ),
     "two parts": (lambda f: changed(f, two_parts), CENTRE, "2 parts that share no faces"),
     "millimetres": (plate_mesh, {"unit": None}, r"66 x 66 x 2 m \(millimetres .* set body.unit"),
+    "a unit of metres nobody stated": (
+        lambda f: write_mesh(f / "p.msh", lambda: plate(0.75, 0.2), 0.3, 1),
+        {"unit": None, "outer": [0.0, 0.0, 0.2]},
+        r"1\.5 x 1\.5 x 0\.2 m \(millimetres .* between 2e-05 and 1 m: set body.unit",
+    ),
     "too small": (plate_mesh, {"unit": 1e-9}, "largest side must lie between 2e-05 and 2 m"),
     "missing name": (
         plate_mesh, {"outer": "tpo"}, "outer.at is 'tpo', .* does not have; it has 'top'",
@@ -116,6 +125,10 @@ CASES: dict[str, tuple[Callable[[Path], Path], dict[str, Any], str]] = {
     "no deck": (lambda f: written(f, "a.inp", "hello"), {}, r"no \*NODE"),
     "two solids": (lambda f: write_cad(f / "a.step", two_solids), CAD, "has 2 solids; one is need"),
     "no solid": (lambda f: write_cad(f / "a.step", shell), CAD, "has no solids; one is needed"),
+    "sharp tip": (
+        lambda f: write_cad(f / "a.step", sharp_cone), CAD | {"outer": [0.0, 0.0, 0.0]},
+        "half angle is 14.9 degrees; tips from 25 degrees",
+    ),
     "missing face": (named_plate, CAD | {"outer": "topp"}, "it has 'top', 'bottom', 'rim'"),
     "above CAD": (
         named_plate, CAD | {"outer": [0.0, 0.0, 0.003]}, "is 0.001 m away .* half an element",

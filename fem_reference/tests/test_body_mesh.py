@@ -16,7 +16,7 @@ import pytest
 from fem_reference.body.abaqus import cell_of, read_abaqus
 from fem_reference.body.body import Body, body_of, fixed_mask
 from fem_reference.body.cells import HEX_EDGES, HEX_FACES, SOLIDS
-from fem_reference.body.files import read_mesh
+from fem_reference.body.files import gmsh_session, read_mesh
 from fem_reference.body.mesh_file import Meshed, meshed, write_body_mesh
 from fem_reference.body.scene import parse_body_scene
 from fem_reference.body.source import MeshFile
@@ -312,6 +312,21 @@ def test_a_mesh_is_taken_as_it_is(plate_msh: Path, tmp_path: Path) -> None:
     again = run_program("groups", tmp_path / "body.vtu")
     names = {each["name"]: each["kind"] for each in json.loads(again.stdout)["groups"]}
     assert names == {"fixed": "nodes", "material 0": "volume"}
+
+
+def test_a_med_file_is_read_as_msh_is(plate_msh: Path, tmp_path: Path) -> None:
+    med = tmp_path / "plate.med"
+    with gmsh_session():
+        gmsh.open(str(plate_msh))
+        gmsh.write(str(med))
+    ours, theirs = (result_of(path, "top", fixed=["rim"]) for path in (med, plate_msh))
+    places = [np.sort(each.body.points, axis=0) for each in (ours, theirs)]
+    assert np.allclose(*places, atol=1e-12)
+    assert np.count_nonzero(ours.fixed) == np.count_nonzero(theirs.fixed) > 0
+    one, other = ours.contacts["outer"], theirs.contacts["outer"]
+    assert one is not None and other is not None
+    assert np.allclose(one["point"], other["point"], atol=1e-8)
+    assert one["edge_distance"] == pytest.approx(other["edge_distance"], rel=1e-6)
 
 
 def test_linear_elements_get_straight_midside_nodes(tmp_path: Path) -> None:

@@ -217,7 +217,13 @@ mod tests {
         let channels = vec![channel("outer_velocity"), channel("inner_velocity")];
         // the instrument's clock begins with the record
         let time = time.iter().map(|t| t + 150e-6).collect();
-        Record { file: PathBuf::from("synthetic.csv"), time, channels }
+        Record {
+            file: PathBuf::from("synthetic.csv"),
+            time,
+            channels,
+            gaps: Vec::new(),
+            integrals: Vec::new(),
+        }
     }
 
     #[test]

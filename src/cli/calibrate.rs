@@ -1,11 +1,12 @@
 //! `impactcheck calibrate`: inputs from measured histories.
 
+use super::record_map::RecordMap;
 use super::{Context, JsonArgument, compare_inputs};
 use crate::calibration::{Calibration, calibrate};
 use crate::error::{Error, ExitStatus, Result};
 use crate::format::{percent, prefixed, with_unit};
 use crate::kinds::{self, Use};
-use crate::measured::{Record, Speed};
+use crate::measured::Speed;
 use crate::scene::{self, Model, Template};
 use clap::Args;
 use std::path::PathBuf;
@@ -17,9 +18,11 @@ pub struct Arguments {
     /// Fields to identify
     #[arg(long, value_delimiter = ',', required = true, value_name = "FIELD,…")]
     over: Vec<String>,
-    /// Measured histories (CSV), as in `compare --measured`
+    /// Measured histories, as in `compare --measured`
     #[arg(long, value_delimiter = ',', required = true, value_name = "FILE,…")]
     measured: Vec<PathBuf>,
+    #[command(flatten)]
+    record_map: RecordMap,
     /// Reduced model [default: C]
     #[arg(long, default_value = "C", hide_default_value = true)]
     model: Model,
@@ -42,7 +45,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
         return Err(Error::Usage(format!("--over names `{}` twice", twice[0])));
     }
-    let records = arguments.measured.iter().map(|file| Record::read(file)).collect::<Result<Vec<_>>>()?;
+    let records = arguments.record_map.records(context, &arguments.measured)?;
     let how = (arguments.bandwidth, arguments.speed);
     let found = calibrate(&template, &arguments.over, &records, arguments.model, how)?;
     for record in &found.records {

@@ -1,6 +1,7 @@
 //! What `compare` and `gate` are both asked.
 
 use super::external::Permission;
+use super::record_map::RecordMap;
 use super::requested_model::{self, RequestedModel};
 use super::{JsonArgument, compare_inputs};
 use crate::measured::Speed;
@@ -33,10 +34,12 @@ pub struct Arguments {
     /// 10. With --compute a missing one is computed. Scenes that CalculiX cannot solve are skipped
     #[arg(long)]
     pub(super) reference_check: bool,
-    /// Measured histories (CSV, units in the header: `time [us],outer_velocity [mm/s],...`). Several files, separated
-    /// by commas or spaces, are repeated impacts
+    /// Measured histories: tables of text with headings such as `time [us]`, `outer_velocity [mm/s]`, or with --map.
+    /// Several files, separated by commas or spaces, are repeated impacts
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
     pub(super) measured: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(super) record_map: RecordMap,
     /// Bandwidth of the instrument; the models' curves are filtered to it
     #[arg(long, default_value = "100 kHz", value_name = "FREQUENCY", value_parser = compare_inputs::bandwidth)]
     pub(super) bandwidth: f64,

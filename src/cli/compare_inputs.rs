@@ -1,5 +1,7 @@
 //! What a comparison is asked to use, checked before anything is computed.
 
+use super::Context;
+use super::record_map::RecordMap;
 use crate::ci::acceptance::Acceptance;
 use crate::ci::tolerance_watch;
 use crate::comparison::ChangedTolerance;
@@ -88,7 +90,12 @@ pub(super) fn figure_width(text: &str) -> std::result::Result<f64, String> {
 }
 
 /// The measured files; they belong to one scene.
-pub(super) fn records(files: &[PathBuf], scenes: &[(PathBuf, Scene)]) -> Result<Vec<Record>> {
+pub(super) fn records(
+    context: &Context,
+    files: &[PathBuf],
+    scenes: &[(PathBuf, Scene)],
+    how: &RecordMap,
+) -> Result<Vec<Record>> {
     let measurable = scenes.iter().filter(|(_, scene)| kinds::of(scene).serves(Use::Records)).count();
     if !files.is_empty() && (measurable != 1 || scenes.len() != 1) {
         return Err(Error::Usage(format!(
@@ -96,7 +103,7 @@ pub(super) fn records(files: &[PathBuf], scenes: &[(PathBuf, Scene)]) -> Result<
             scenes.len()
         )));
     }
-    files.iter().map(|file| Record::read(file)).collect()
+    how.records(context, files)
 }
 
 /// Parses a bandwidth that a filter can be made for.

@@ -61,11 +61,15 @@ impl<'a> Job<'a> {
                 context.note(format_args!("{}", crate::kinds::models_only(&scene)));
             }
         }
-        Self::of(arguments, scenes)
+        Self::of(context, arguments, scenes)
     }
 
     /// The comparison of these scenes. What can't be done is refused before anything is computed.
-    pub(super) fn of(arguments: &'a Arguments, scenes: Vec<(PathBuf, Scene)>) -> Result<Self> {
+    pub(super) fn of(
+        context: &Context,
+        arguments: &'a Arguments,
+        scenes: Vec<(PathBuf, Scene)>,
+    ) -> Result<Self> {
         let start = Instant::now();
         compare_inputs::named_apart(&scenes)?;
         if let (Some(tolerance), false) =
@@ -91,7 +95,7 @@ impl<'a> Job<'a> {
         if arguments.models.contains(&RequestedModel::External) {
             arguments.permission.require(&scenes)?;
         }
-        let records = compare_inputs::records(&arguments.measured, &scenes)?;
+        let records = compare_inputs::records(context, &arguments.measured, &scenes, &arguments.record_map)?;
         let figures = compare_inputs::figures(arguments.figure.as_ref(), &scenes)?;
         Ok(Job { start, arguments, scenes, records, figures })
     }

@@ -92,7 +92,8 @@ pub fn compare(scenes: Vec<Placed>, request: Comparing) -> Result<Compared> {
     arguments.permission.allow_external = allow_external;
     (arguments.models, arguments.resolution, arguments.compute) = (models, Some(resolution), compute);
     arguments.out = out.unwrap_or_default();
-    let job = if scenes.is_empty() { Job::read(&QUIET, &arguments)? } else { Job::of(&arguments, scenes)? };
+    let job =
+        if scenes.is_empty() { Job::read(&QUIET, &arguments)? } else { Job::of(&QUIET, &arguments, scenes)? };
     if is_written {
         job.check_folders(&[])?;
     }

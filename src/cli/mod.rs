@@ -19,6 +19,7 @@ mod new;
 mod optimise;
 mod progress;
 mod propagated;
+mod record_map;
 mod reduced;
 mod reference;
 mod requested_model;
@@ -34,6 +35,7 @@ mod validated_scenes;
 mod watch;
 
 use crate::error::{Error, ExitStatus, Result};
+use crate::kinds::general_impact::{set_announcer, set_up};
 use crate::scene::{self, Scene};
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
@@ -198,6 +200,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         }
     };
     let context = Context { store: cli.store, quiet: cli.quiet, verbose: cli.verbose };
+    let own = context.clone();
+    set_announcer(Box::new(move |unknowns| set_up::announce(unknowns, |line| own.note(line))));
     let result = match cli.command {
         Command::Reduced(arguments) => reduced::run(&context, &arguments),
         Command::Reference(arguments) => reference::run(&context, &arguments),

@@ -8,7 +8,6 @@ mod interpolation;
 mod iso18571;
 mod russell;
 mod sprague_geers;
-pub mod table;
 
 pub(crate) use alignment::peak;
 pub use alignment::{AlignedCurve, CommonAxis, SampledCurve, align, sample};

@@ -1,6 +1,6 @@
 //! What another program answers: a JSON document with quantities and curves, or a table of curves.
 
-use crate::curves::table::{self, Columns};
+use crate::columns::{self, Columns};
 use crate::kinds::{self, Kind};
 use crate::result::{Curve, History, SCHEMA_VERSION, Source, Summary, Table};
 use crate::scene::{Scene, suggestion};
@@ -22,7 +22,7 @@ const SHOWN: usize = 60;
 pub fn read(scene: &Scene, name: &str, text: &[u8]) -> Result<(Summary, History), String> {
     let kind = kinds::of(scene);
     let text = std::str::from_utf8(text).map_err(|e| format!("it is no text in UTF-8: {e}"))?;
-    let text = text.trim_start_matches(table::BYTE_ORDER_MARK).trim();
+    let text = text.trim_start_matches('\u{feff}').trim();
     if text.is_empty() {
         return Err("it is empty".into());
     }
@@ -120,7 +120,7 @@ fn warnings(kind: &dyn Kind, document: &Value) -> Vec<String> {
 /// The curves of a document's `history`.
 fn history(kind: &dyn Kind, curves: &Map<String, Value>) -> Result<History, String> {
     for name in curves.keys() {
-        table::known_column(name, kind.curves()).map_err(|reason| format!("its history: {reason}"))?;
+        columns::known_column(name, kind.curves()).map_err(|reason| format!("its history: {reason}"))?;
     }
     let values = |name: &str| -> Result<Option<Vec<f64>>, String> {
         let Some(found) = curves.get(name) else { return Ok(None) };
@@ -139,7 +139,8 @@ fn history(kind: &dyn Kind, curves: &Map<String, Value>) -> Result<History, Stri
             given.push((curve.name, values));
         }
     }
-    assembled(kind, Columns { time, values: given }).map_err(|reason| format!("its history: {reason}"))
+    assembled(kind, Columns { time, values: given, gaps: Vec::new(), integrals: Vec::new() })
+        .map_err(|reason| format!("its history: {reason}"))
 }
 
 /// The curves of a table.
@@ -151,18 +152,18 @@ fn rows(kind: &dyn Kind, text: &str) -> Result<History, String> {
             first.chars().take(SHOWN).collect::<String>()
         ));
     }
-    let mut reader = table::csv_reader(text.as_bytes(), b',');
-    let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
-    let columns = table::by_heading(&header, kind.curves())?;
-    assembled(kind, table::read(&mut reader, &columns, FEWEST_SAMPLES)?)
+    assembled(kind, columns::read(text, &columns::Map::default(), kind.curves(), FEWEST_SAMPLES)?.columns)
 }
 
 /// A history of these columns that can be sampled, its curves in the order of their kind.
 ///
 /// # Errors
 /// One sentence that says what is wrong with them.
-pub fn assembled(kind: &dyn Kind, Columns { time, values }: Columns) -> Result<History, String> {
+pub fn assembled(kind: &dyn Kind, Columns { time, values, gaps, .. }: Columns) -> Result<History, String> {
     let samples = time.len();
+    if let Some((name, [from, _])) = gaps.first() {
+        return Err(format!("{name} has no value at {from} s"));
+    }
     if !(FEWEST_SAMPLES..=MOST_SAMPLES).contains(&samples) {
         return Err(format!(
             "there are {samples} samples; there have to be {FEWEST_SAMPLES} to {MOST_SAMPLES}"

@@ -119,8 +119,8 @@ pub trait Kind: physics::Kind {
         Err(refused(scene, Use::Records))
     }
 
-    /// What `optimise` maximises by itself: a quantity, or [`INTENDED_SPEED`].
-    fn objective(&self) -> &'static str {
+    /// What `optimise` maximises of a scene by itself: a quantity, or [`INTENDED_SPEED`].
+    fn objective(&self, _: &Scene) -> &'static str {
         "efficiency"
     }
 

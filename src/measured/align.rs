@@ -281,7 +281,7 @@ impl Alignment<'_> {
         if after.len() < FEWEST {
             after.clear();
         }
-        Ok(FreeFlight { is_velocity: channel.quantity.ends_with("velocity"), before, after })
+        Ok(FreeFlight { is_level: !channel.quantity.ends_with("displacement"), before, after })
     }
 
     /// What signal number `k` shows, its free flight ending with the first further impact.
@@ -313,12 +313,17 @@ impl Alignment<'_> {
         }
         let (flight, errors) = (self.fitted(k, &free)?, free.errors(self.bandwidth));
         let outer = quantity.starts_with("outer");
-        let known = if outer { -self.approach.outer_speed } else { self.approach.inner_velocity };
-        let trusted = outer && self.speed == Speed::Measured;
+        let is_force = quantity.ends_with("force");
+        let known = match outer {
+            _ if is_force => 0.0,
+            true => -self.approach.outer_speed,
+            false => self.approach.inner_velocity,
+        };
+        let trusted = outer && !is_force && self.speed == Speed::Measured;
         // the part of the fit that the motion leaves
-        let measured = if free.is_velocity { flight.level } else { flight.slope };
+        let measured = if free.is_level { flight.level } else { flight.slope };
         let (before, left) = if trusted { (measured, 0.0) } else { (known, measured - known) };
-        let (offset, drift) = if free.is_velocity { (left, flight.slope) } else { (flight.level, left) };
+        let (offset, drift) = if free.is_level { (left, flight.slope) } else { (flight.level, left) };
         let correction = ChannelCorrection { quantity, offset, drift };
         Ok(Seen { correction, flight, errors, free, before, events, ends, hums, disturbance })
     }

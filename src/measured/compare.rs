@@ -121,7 +121,7 @@ pub fn compare(
     }
     let (curves, efficiency) = (sampled(first, window), Efficiency::of(&records));
     // another program need not give the curves that are measured
-    let shows = |outcome: &&Outcome| SIGNALS.iter().all(|signal| outcome.history.curve(signal).is_some());
+    let shows = |outcome: &&Outcome| curves.iter().all(|c| outcome.history.curve(c.quantity).is_some());
     let models = reduced.iter().filter(shows);
     let outcomes = std::iter::once(("reference", reference))
         .chain(models.map(|outcome| (outcome.summary.model.as_deref().unwrap_or_default(), outcome)));

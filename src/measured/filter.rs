@@ -10,8 +10,14 @@ const SAMPLES_PER_PERIOD: f64 = 40.0;
 /// Periods of the bandwidth by which a curve is extended on both sides: free flight, and room for the filter to settle.
 const MARGIN: f64 = 12.0;
 /// The curves that can be measured.
-pub(super) const SIGNALS: [&str; 4] =
-    ["outer_displacement", "outer_velocity", "inner_displacement", "inner_velocity"];
+pub(super) const SIGNALS: [&str; 6] = [
+    "outer_displacement",
+    "outer_velocity",
+    "outer_force",
+    "inner_displacement",
+    "inner_velocity",
+    "inner_force",
+];
 
 /// Low-pass filter without phase: Butterworth's of second order, forwards and backwards, -3 dB at `bandwidth` Hz for both
 /// together (as SAE J211 does). `step` is the distance of the samples in s; the ends settle within some periods.
@@ -45,15 +51,23 @@ pub fn low_pass(values: &[f64], step: f64, bandwidth: f64) -> Result<Vec<f64>> {
 #[derive(Debug, Clone)]
 pub struct Filtered {
     time: Vec<f64>,
-    /// Rates at which the displacements go on before and after the axis, m/s, and the curves; as [`SIGNALS`].
-    curves: [(f64, f64, Vec<f64>); 4],
+    curves: Vec<FilteredCurve>,
+}
+
+/// One of [`SIGNALS`].
+#[derive(Debug, Clone)]
+struct FilteredCurve {
+    name: &'static str,
+    /// Rates at which a displacement goes on before and after the axis, m/s; 0 of all else.
+    rates: [f64; 2],
+    values: Vec<f64>,
 }
 
 impl Filtered {
     /// Filters `history` to `bandwidth` Hz. Before its begin and after its end the bodies fly freely.
     ///
     /// # Errors
-    /// [`Error::Usage`] if the history has fewer than two samples or the bandwidth is not usable.
+    /// [`Error::Usage`] if the history has fewer than two samples, no curve that can be measured, or the bandwidth is not usable.
     pub fn new(history: &History, bandwidth: f64) -> Result<Self> {
         let (Some(&start), Some(&end)) = (history.time.first(), history.time.last()) else {
             return Err(Error::Usage("a history without samples can't be filtered".into()));
@@ -66,25 +80,22 @@ impl Filtered {
         let count = ((end - start + 2.0 * margin) / step).ceil() as usize + 1;
         let time: Vec<f64> = (0..count).map(|k| start - margin + step * k as f64).collect();
         let mut curves = Vec::with_capacity(SIGNALS.len());
+        let curve = |name: &str| history.curve(name).filter(|values| values.len() == history.len());
         for name in SIGNALS {
-            let curve = |name: &str| {
-                let whole = history.curve(name).filter(|values| values.len() == history.len());
-                whole.ok_or_else(|| Error::Usage(format!("a history without `{name}` can't be filtered")))
-            };
-            let values = curve(name)?;
-            let rates = match name.strip_suffix("displacement") {
-                Some(body) => {
-                    let velocity = curve(&format!("{body}velocity"))?;
-                    [velocity[0], velocity[history.len() - 1]]
-                }
-                None => [0.0; 2],
-            };
+            let velocity = name.strip_suffix("displacement").map(|body| curve(&format!("{body}velocity")));
+            let (Some(values), false) = (curve(name), velocity == Some(None)) else { continue };
+            let rates = velocity.flatten().map_or([0.0; 2], |v| [v[0], v[history.len() - 1]]);
             let course = MonotoneCubic::new(&history.time, values);
             let at = |t: f64| course.at(t) + rates[0] * (t - start).min(0.0) + rates[1] * (t - end).max(0.0);
             let sampled: Vec<f64> = time.iter().map(|t| at(*t)).collect();
-            curves.push((rates[0], rates[1], low_pass(&sampled, step, bandwidth)?));
+            curves.push(FilteredCurve { name, rates, values: low_pass(&sampled, step, bandwidth)? });
         }
-        let curves = curves.try_into().map_err(|_| Error::Internal("four curves".into()))?;
+        if curves.is_empty() {
+            return Err(Error::Usage(format!(
+                "a history without any of {} can't be filtered",
+                SIGNALS.join(", ")
+            )));
+        }
         let mut filtered = Filtered { time, curves };
         filtered.cut((0.5 * MARGIN * SAMPLES_PER_PERIOD) as usize);
         Ok(filtered)
@@ -94,14 +105,15 @@ impl Filtered {
     fn cut(&mut self, count: usize) {
         let keep = count..self.time.len() - count;
         self.time = self.time[keep.clone()].to_vec();
-        for (_, _, curve) in &mut self.curves {
-            *curve = curve[keep.clone()].to_vec();
+        for curve in &mut self.curves {
+            curve.values = curve.values[keep.clone()].to_vec();
         }
     }
 
     /// The curve called `quantity` at any time in s after the first touch; `None` if it can't be measured.
     pub fn curve(&self, quantity: &str) -> Option<impl Fn(f64) -> f64 + '_> {
-        let (before, after, values) = &self.curves[SIGNALS.iter().position(|name| *name == quantity)?];
+        let FilteredCurve { rates: [before, after], values, .. } =
+            self.curves.iter().find(|curve| curve.name == quantity)?;
         let last = self.time.len() - 1;
         let (start, end) = (self.time[0], self.time[last]);
         let step = (end - start) / last as f64;

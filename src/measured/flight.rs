@@ -15,8 +15,8 @@ const GROUPS: (f64, f64) = (12.0, 60.0);
 /// Samples of one signal in free flight. Times in s from the first touch, values in SI.
 #[derive(Debug, Clone)]
 pub(super) struct FreeFlight {
-    /// Whether the signal is a velocity, or else a displacement.
-    pub is_velocity: bool,
+    /// Whether the signal is constant in free flight, as a velocity or a force, or else a displacement.
+    pub is_level: bool,
     pub before: Vec<(f64, f64)>,
     /// Empty where the record shows too little of it.
     pub after: Vec<(f64, f64)>,
@@ -58,7 +58,7 @@ pub(super) struct Grouped {
 impl FreeFlight {
     /// Offset, drift and step; `None` if they can't be told apart.
     pub fn fitted(&self) -> Option<FreeFlightFit> {
-        if self.is_velocity && self.after.is_empty() {
+        if self.is_level && self.after.is_empty() {
             // without free flight on the other side drift and contact can't be told apart
             let rows: Vec<([f64; 1], f64)> = self.before.iter().map(|(_, y)| ([1.0], *y)).collect();
             let found = fit(&rows)?;
@@ -69,7 +69,7 @@ impl FreeFlight {
                 step: None,
             });
         }
-        if self.is_velocity {
+        if self.is_level {
             let row = |jump: f64| move |(t, y): &(f64, f64)| ([1.0, *t, jump], *y);
             let rows: Vec<([f64; 3], f64)> =
                 self.before.iter().map(row(0.0)).chain(self.after.iter().map(row(1.0))).collect();
@@ -91,7 +91,7 @@ impl FreeFlight {
     pub fn errors(&self, bandwidth: f64) -> Option<FlightErrors> {
         let Grouped { time, values, segments, .. } = self.grouped(bandwidth);
         let basis = self.basis(&time, segments[0].end);
-        let before = if self.is_velocity { 0 } else { 1 };
+        let before = if self.is_level { 0 } else { 1 };
         let found = if self.after.is_empty() { before + 1 } else { basis.ncols() };
         let SignalFit { errors, .. } =
             SignalFit::of((&time, &values), &basis.columns(0, found).into_owned(), bandwidth)?;
@@ -120,7 +120,7 @@ impl FreeFlight {
     /// Columns of a free flight at `time`, of which the first `before` are before the impact; the step of the velocity is the last.
     pub fn basis(&self, time: &[f64], before: usize) -> DMatrix<f64> {
         let late = |k: usize| if k < before { 0.0 } else { 1.0 };
-        if self.is_velocity {
+        if self.is_level {
             return DMatrix::from_fn(time.len(), 3, |k, j| [1.0, time[k], late(k)][j]);
         }
         DMatrix::from_fn(time.len(), 4, |k, j| [1.0, time[k], late(k), late(k) * time[k]][j])
@@ -169,7 +169,7 @@ mod tests {
         let noise = noise(&mut random, filter, count);
         let sample = |k: usize| (k as f64 / SAMPLING - length, noise[k]);
         FreeFlight {
-            is_velocity: true,
+            is_level: true,
             before: (0..count).map(sample).filter(|(t, _)| *t < -10e-6).collect(),
             after: (0..count).map(sample).filter(|(t, _)| *t > 103e-6).map(|(t, y)| (t, y + STEP)).collect(),
         }

@@ -66,7 +66,7 @@ impl Seen {
         let Some(errors) = self.errors else { return 0.0 };
         // without free flight after the impact no drift is taken out
         let drift = if errors.slope.is_finite() { errors.slope * time } else { 0.0 };
-        if self.free.is_velocity { errors.before.hypot(drift) } else { drift }
+        if self.free.is_level { errors.before.hypot(drift) } else { drift }
     }
 
     /// Velocity after the impact with its standard error.
@@ -125,6 +125,15 @@ impl Alignment<'_> {
             "too little free flight is left to read its velocity from"
         };
         for (time, change) in &seen.events {
+            if quantity.ends_with("force") {
+                let effect = format!(
+                    "{quantity}: it changes by {} {} after the first contact, where nothing should act any more; {rest}",
+                    format::quantity(*change, "N", 3),
+                    format::quantity(*time, "s", 3)
+                );
+                findings.push(Finding::new(FindingKind::SecondStrike, [time + shift, end], effect));
+                continue;
+            }
             // a push away from the plate is a strike, one back is a stop
             let strike = if quantity.starts_with("inner") { *change < 0.0 } else { *change > 0.0 };
             let (kind, what) = if strike {
@@ -139,7 +148,11 @@ impl Alignment<'_> {
             );
             findings.push(Finding::new(kind, [time + shift, end], effect));
         }
-        let unit = if seen.free.is_velocity { "m/s" } else { "m" };
+        let unit = match quantity {
+            name if name.ends_with("force") => "N",
+            _ if seen.free.is_level => "m/s",
+            _ => "m",
+        };
         findings.extend(seen.hums.iter().map(|hum| {
             let effect = format!(
                 "{quantity}: a hum of {} Hz with an amplitude of {} is taken out; what its fit leaves enters the velocities",
@@ -162,15 +175,16 @@ impl Alignment<'_> {
         findings.extend(of_disturbance.map(|(kind, effect)| Finding::new(kind, self.whole(), effect)));
         if seen.disturbance.is_none() && self.drifts(seen) {
             let effect = format!(
-                "{quantity}: a drift of {drift:.3} m/s^2 is taken out; if it is not constant, the velocities after the impact are wrong"
+                "{quantity}: a drift of {drift:.3} {unit}/s is taken out; if it is not constant, the velocities after the impact are wrong"
             );
             findings.push(Finding::new(FindingKind::Drift, self.whole(), effect));
         }
         let span = self.span(quantity);
         let misfit = self.misfit(shift, seen) / span;
-        if seen.free.is_velocity && offset.abs() > LARGE_OFFSET * span {
+        let may_be_any = self.record.integrals.contains(quantity);
+        if seen.free.is_level && !may_be_any && offset.abs() > LARGE_OFFSET * span {
             let effect = format!(
-                "{quantity}: an offset of {offset:.3} m/s was taken out, {:.0} % of the span of the scene's signal; check sign, unit and scene",
+                "{quantity}: an offset of {offset:.3} {unit} was taken out, {:.0} % of the span of the scene's signal; check sign, unit and scene",
                 100.0 * offset.abs() / span
             );
             findings.push(Finding::new(FindingKind::OtherScene, self.whole(), effect));
@@ -187,7 +201,7 @@ impl Alignment<'_> {
     /// Whether the drift of a velocity is large and no chance.
     fn drifts(&self, seen: &Seen) -> bool {
         let [start, end] = self.whole();
-        let found = seen.flight.step.zip(seen.errors).filter(|_| seen.free.is_velocity);
+        let found = seen.flight.step.zip(seen.errors).filter(|_| seen.free.is_level);
         let Some((step, errors)) = found else { return false };
         let drift = seen.flight.slope.abs();
         drift * (end - start) > LARGE_DRIFT * step.abs() && drift > SIGNIFICANT_DRIFT * errors.slope

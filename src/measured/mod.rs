@@ -23,7 +23,7 @@ pub use area::Area;
 pub use compare::{Measured, MeasuredComparison, Series, compare};
 pub use filter::{Filtered, low_pass};
 pub use finding::{Finding, FindingKind};
-pub use record::{Channel, Record};
+pub use record::{Channel, ReadRecord, Record};
 
 /// Bandwidth in Hz of the paper's vibrometers.
 pub const BANDWIDTH: f64 = 100e3;

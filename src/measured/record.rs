@@ -1,7 +1,7 @@
-//! A record from a CSV file: times and signals with their units in the header.
+//! A record from a file: times and signals.
 
 use super::filter::SIGNALS;
-use crate::curves::table::{self, Columns};
+use crate::columns::{self, Found, Map};
 use crate::error::{Error, Result};
 use crate::kinds::KINDS;
 use crate::result::Curve;
@@ -28,39 +28,58 @@ pub struct Record {
     pub time: Vec<f64>,
     /// The signals, one at least.
     pub channels: Vec<Channel>,
+    /// Where a signal has no values, which are interpolated: its name, first and last time in s.
+    pub gaps: Vec<(&'static str, [f64; 2])>,
+    /// Signals that are integrals of what was measured, with any offset.
+    pub integrals: Vec<&'static str>,
+}
+
+/// A record, and how its file was read.
+#[derive(Debug, Clone)]
+pub struct ReadRecord {
+    /// The record.
+    pub record: Record,
+    /// A map that reads its file so.
+    pub map: String,
+    /// What was inferred, in words; `None` of a plain table.
+    pub how: Option<String>,
 }
 
 impl Record {
-    /// Reads a CSV file whose header names quantity and unit, such as `time [us]`, `outer_velocity [mm/s]`; without unit a
-    /// column is in SI. Lines that begin with `#` are skipped.
+    /// Reads a table of text whose headings name quantity and unit, such as `time [us]`, `outer_velocity [mm/s]`, or that `map` describes;
+    /// without unit a column is in SI.
     ///
     /// # Errors
     /// [`Error::Usage`] if there is no such file, [`Error::Scene`] if it is no record.
-    pub fn read(path: &Path) -> Result<Self> {
+    pub fn read(path: &Path, map: &Map) -> Result<ReadRecord> {
         let bytes = std::fs::read(path).map_err(|e| match e.kind() {
             std::io::ErrorKind::NotFound => {
                 Error::Usage(format!("there is no measured file {}", path.display()))
             }
             _ => Error::io("reading", path, e),
         })?;
-        Self::parse(path, &bytes).map_err(|reason| {
+        Self::parse(path, &bytes, map).map_err(|reason| {
             Error::Scene(miette::miette!(
-                help = "a measured file is CSV with a header such as `time [us],outer_velocity [mm/s],inner_velocity [mm/s]`",
+                help = "headings such as `time [us],outer_velocity [mm/s],inner_velocity [mm/s]` need no map; for others name a map with --map",
                 "{}: {reason}",
                 path.display()
             ))
         })
     }
 
-    fn parse(path: &Path, bytes: &[u8]) -> std::result::Result<Self, String> {
-        let curves = KINDS.iter().flat_map(|kind| kind.curves());
-        let known: Vec<Curve> = curves.filter(|curve| SIGNALS.contains(&curve.name)).cloned().collect();
-        let mut reader = table::csv_reader(bytes, b',');
-        let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
-        let columns = table::by_heading(&header, &known)?;
-        let Columns { time, values } = table::read(&mut reader, &columns, FEWEST)?;
-        let channels = values.into_iter().map(|(quantity, values)| Channel { quantity, values }).collect();
-        Ok(Record { file: path.to_path_buf(), time, channels })
+    fn parse(path: &Path, bytes: &[u8], map: &Map) -> std::result::Result<ReadRecord, String> {
+        let known: Vec<Curve> = KINDS.iter().flat_map(|kind| kind.curves()).cloned().collect();
+        let text = columns::decoded(bytes, map.table.encoding.as_deref())?;
+        let Found { columns, map, how } = columns::read(&text, map, &known, FEWEST)?;
+        // histories of this program have more curves than instruments show
+        let columns::Columns { time, values, gaps, integrals } = columns;
+        let measured = values.into_iter().filter(|(name, _)| SIGNALS.contains(name));
+        let channels: Vec<_> = measured.map(|(quantity, values)| Channel { quantity, values }).collect();
+        if channels.is_empty() {
+            return Err(format!("it has none of the signals {}", SIGNALS.join(", ")));
+        }
+        let record = Record { file: path.to_path_buf(), time, channels, gaps, integrals };
+        Ok(ReadRecord { record, map, how })
     }
 
     /// The signal called `quantity`.
@@ -82,7 +101,7 @@ mod tests {
     }
 
     fn parse(text: &str) -> std::result::Result<Record, String> {
-        Record::parse(Path::new("r.csv"), text.as_bytes())
+        Record::parse(Path::new("r.csv"), text.as_bytes(), &Map::default()).map(|read| read.record)
     }
 
     #[test]
@@ -96,6 +115,72 @@ mod tests {
         assert_eq!(plain.time[7], 7.0);
     }
 
+    /// Values that are missing are interpolated and listed; repeated times are one; columns of something else are left out.
+    #[test]
+    fn what_instruments_write_is_read() {
+        let gap = |k: usize, row: String| if (5..8).contains(&k) { format!("{k}, , {}", 2 * k) } else { row };
+        let with_gap = rows().enumerate().map(|(k, row)| gap(k, row));
+        let record = parse(&text("time [us],outer_velocity,inner_velocity", with_gap)).expect("record");
+        assert!((record.channel("outer_velocity").expect("there").values[6] + 544.0).abs() < 1e-9);
+        let [(name, [from, to])] = record.gaps[..] else { panic!("one gap") };
+        assert_eq!((name, (from * 1e6).round(), (to * 1e6).round()), ("outer_velocity", 5.0, 7.0));
+
+        let twice = rows().flat_map(|row| [row.clone(), row]);
+        assert_eq!(parse(&text("time,outer_velocity,inner_velocity", twice)).expect("record").time.len(), 40);
+
+        let more = rows().map(|row| format!("{row}, 7"));
+        let record = parse(&text("time,outer_velocity,inner_velocity,trigger [V]", more)).expect("record");
+        assert_eq!(record.channels.len(), 2);
+    }
+
+    /// A velocity from an acceleration, a force from its impulse; times by start and interval; sensitivity, sign, delay and a clock of its own.
+    #[test]
+    fn a_map_says_what_a_file_does_not() {
+        let read = |map: &str, text: &str| {
+            let map = Map::parse(map).expect("a map");
+            Record::parse(Path::new("r.csv"), text.as_bytes(), &map)
+                .map(|read| read.record)
+                .expect("a record")
+        };
+        let numbers =
+            |of: fn(f64) -> String| (0..50).map(|k| of(f64::from(k))).collect::<Vec<_>>().join("\n");
+        let constant = numbers(|k| format!("{k};2,5;{}", 0.5 * k).replace('.', ","));
+        let record = read(
+            "[time]\ninterval = \"1 ms\"\n[columns]\nouter_velocity = { column = 2, quantity = \"acceleration\" }\n\
+             outer_force = { column = 3, quantity = \"impulse\", sign = -1 }",
+            &constant,
+        );
+        assert!((record.time[49] - 0.049).abs() < 1e-12);
+        let last = |name: &str| *record.channel(name).expect("there").values.last().expect("one");
+        assert!((last("outer_velocity") - 2.5 * 0.049).abs() < 1e-12);
+        assert!((last("outer_force") + 500.0).abs() < 1e-9);
+
+        let volts = numbers(|k| format!("{k}\t{}\t{}", 2.0 * k, 10.0 * k + 5.0));
+        let record = read(
+            "[columns]\ntime = { column = 1, unit = \"us\" }\n\
+             outer_velocity = { column = 2, unit = \"mV\", sensitivity = \"5 mm/s/V\", delay = \"2 us\" }\n\
+             inner_velocity = { column = 3, offset = 1, time = 3 }",
+            &volts,
+        );
+        let value = |name: &str, k: usize| record.channel(name).expect("there").values[k];
+        // late by two samples
+        assert!((value("outer_velocity", 10) - 2.0 * 12.0 * 1e-3 * 5e-3).abs() < 1e-12);
+        // at its own time 10 k + 5 us it is 10 k + 6 m/s: at 25 us 26
+        assert!((value("inner_velocity", 25) - 26.0).abs() < 1e-9);
+    }
+
+    /// The map that comes with a record reads its file in the same way.
+    #[test]
+    fn the_map_of_what_was_inferred_reads_the_same() {
+        let lines = (0..40).map(|k| format!("{k},5;{};{}", -k, k)).collect::<Vec<_>>().join("\n");
+        let text = format!("; made by x\ntime;outer_acceleration;inner_displacement\nus;m/s2;mm\n{lines}\n");
+        let first = Record::parse(Path::new("r.csv"), text.as_bytes(), &Map::default()).expect("a record");
+        let map = Map::parse(&first.map).expect("a map");
+        let again = Record::parse(Path::new("r.csv"), text.as_bytes(), &map).expect("a record");
+        assert_eq!(first.record, again.record);
+        assert!((first.record.time[1] - 1.5e-6).abs() < 1e-18, "{}", first.map);
+    }
+
     #[test]
     fn an_invalid_record_is_reported_with_its_place() {
         let good = "time [us],outer_velocity [mm/s],inner_velocity [mm/s]";
@@ -105,20 +190,21 @@ mod tests {
         };
         for (file, part) in [
             (text("time [us],outer_speed,inner_velocity", rows()), "`outer_speed` is not a known column"),
-            (text("time [us];outer_velocity [mm/s]", rows()), "the columns are separated by `;`"),
             (
                 text("time [um],outer_velocity,inner_velocity", rows()),
                 "`um` is the unit of something else; a time in s is needed",
             ),
             (text("time [us,outer_velocity,inner_velocity", rows()), "`]` is missing"),
             (text("outer_displacement,outer_velocity,inner_velocity", rows()), "no column `time`"),
-            (text("time,time,inner_velocity", rows()), "two columns"),
+            (text("time,time,inner_velocity", rows()), "two columns are called `time`"),
+            (text("a,b,c", rows()), "there is no column `time` (there are: a | b | c)"),
+            (text("time,b,c", rows()), "say in a map which is which"),
             (text(good, rows().take(5)), "has 5 samples"),
-            (text(good, row(3, "3,nan,0")), "line 5: outer_velocity is `nan`"),
+            (text(good, row(3, "3,inf,0")), "line 5: outer_velocity is `inf`"),
+            (text(good, row(3, ",1,0")), "line 5: time is missing"),
             (text(good, row(3, "2,0,0")), "line 5: time is"),
-            (text(good, row(3, "3,0")), "line"),
-            (String::new(), "no column `time`"),
-            ("time\n1\n2".into(), "no signal"),
+            (text(good, row(3, "3,x,0")), "line 5: outer_velocity is `x`"),
+            (String::new(), "no columns of numbers"),
         ] {
             let said = parse(&file).expect_err("no record");
             assert!(said.contains(part), "{said}");

@@ -47,7 +47,16 @@ pub(super) fn screened(record: &Record, bandwidth: f64) -> (Record, Vec<Finding>
         file: record.file.clone(),
         time: record.time[keep.clone()].to_vec(),
         channels: channels.collect(),
+        gaps: record.gaps.clone(),
+        integrals: record.integrals.clone(),
     };
+    findings.extend(record.gaps.iter().map(|(name, [from, to])| {
+        let effect = format!(
+            "{name}: values are missing for {}; a straight line stands for them",
+            quantity(to - from, "s", 3)
+        );
+        Finding::new(FindingKind::Gap, [*from, *to], effect)
+    }));
     findings.extend(record.channels.iter().filter_map(|channel| clipped(&record.time, channel)));
     let longest = gap(&record.time, bandwidth);
     findings.extend(record.time.windows(2).filter(|pair| pair[1] - pair[0] > longest).map(|pair| {

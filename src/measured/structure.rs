@@ -123,7 +123,7 @@ impl FreeFlight {
         let mut found = vec![column(Disturbance::Curved { change: 0.0 }, &|k| time[k].powi(2))];
         for first in late.start + MARGIN..late.end.saturating_sub(MARGIN) {
             let start = time[first] - 0.5 * width;
-            let of = |k: usize| match (k >= first, self.is_velocity) {
+            let of = |k: usize| match (k >= first, self.is_level) {
                 (false, _) => 0.0,
                 (true, true) => 1.0,
                 (true, false) => time[k] - start,
@@ -131,7 +131,7 @@ impl FreeFlight {
             let earliest = start - width;
             found.push(column(Disturbance::Event { time: start, earliest, change: 0.0 }, &of));
         }
-        if self.is_velocity {
+        if self.is_level {
             // a high-pass of first order: true = signal + integral of the signal over the time constant
             let mut integral = vec![0.0; count];
             for k in 1..count {

@@ -21,8 +21,9 @@ impl Objective {
     /// [`Error::Usage`] if the scene has no such quantity, or `within` belongs to none.
     pub fn of(name: Option<&str>, within: Option<f64>, scene: &Scene) -> Result<Self> {
         let kind = kinds::of(scene);
-        let name = name.unwrap_or(kind.objective());
-        let intends = kind.objective() == INTENDED_SPEED;
+        let own = kind.objective(scene);
+        let name = name.unwrap_or(own);
+        let intends = own == INTENDED_SPEED;
         if intends && name == INTENDED_SPEED {
             return Ok(Self::IntendedSpeed(within.unwrap_or(std::f64::consts::PI)));
         }
@@ -99,6 +100,16 @@ mod tests {
             Template::parse("base", include_str!("../../scenes/scaled-plate-r10.toml")).expect("scene");
         assert_eq!(Objective::of(None, None, plate.scene()).unwrap(), Objective::Quantity("efficiency", "1"));
         assert_eq!(Objective::of(Some("inner_force_peak"), None, plate.scene()).unwrap().unit(), "N");
+        let meeting = |struck: &str| {
+            let (head, end) = ("name = \"o\"\nkind = \"impact\"\n", "material = \"steel\"\n");
+            let steel = "[materials.steel]\nyoungs_modulus = 210e9\npoisson_ratio = 0.3\ndensity = 7780\n";
+            let outer = "[outer]\nkind = \"sphere\"\nradius = 0.01\nspeed = 0.5\n";
+            let text = format!("{head}{steel}{outer}{end}{struck}{end}");
+            let scene = Template::parse("o", &text).expect("scene");
+            Objective::of(None, None, scene.scene()).expect("an objective").name()
+        };
+        assert_eq!(meeting("[wall]\n"), "outer_restitution");
+        assert_eq!(meeting("[inner]\nkind = \"sphere\"\nradius = 0.01\n"), "efficiency");
         for name in ["intended_speed", "outer_contacts", "sphere_speed"] {
             let refused = Objective::of(Some(name), None, plate.scene()).unwrap_err();
             assert!(refused.to_string().contains(name), "{refused}");

@@ -76,7 +76,7 @@ fn record(truth: &Outcome, signals: &[&'static str], with: Disturbance) -> Recor
         })
         .collect();
     let time = time.iter().map(|t| t + with.shift).collect();
-    Record { file: "synthetic.csv".into(), time, channels }
+    Record { file: "synthetic.csv".into(), time, channels, gaps: Vec::new(), integrals: Vec::new() }
 }
 
 fn aligned(record: &Record, outcome: &Outcome, setup: &PlateImpact, speed: Speed) -> AlignedRecord {
@@ -177,7 +177,13 @@ fn one_signal_is_enough_and_missing_free_flight_is_reported() {
             .iter()
             .map(|c| Channel { quantity: c.quantity, values: pick(&c.values) })
             .collect();
-        Record { file: "part.csv".into(), time: pick(&whole.time), channels }
+        Record {
+            file: "part.csv".into(),
+            time: pick(&whole.time),
+            channels,
+            gaps: Vec::new(),
+            integrals: Vec::new(),
+        }
     };
     let late = part(&|t| t > 0.0);
     let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();

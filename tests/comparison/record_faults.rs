@@ -42,7 +42,13 @@ impl Bench {
             Channel { quantity, values }
         });
         let time = time.iter().map(|t| t + 3.2e-3).collect();
-        Record { file: "synthetic.csv".into(), time, channels: channels.into() }
+        Record {
+            file: "synthetic.csv".into(),
+            time,
+            channels: channels.into(),
+            gaps: Vec::new(),
+            integrals: Vec::new(),
+        }
     }
 
     fn align(&self, record: &Record) -> impactcheck::Result<AlignedRecord> {

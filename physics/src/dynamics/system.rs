@@ -123,6 +123,16 @@ impl System {
         material: &Material,
         tip_residual: [f64; 2],
     ) -> Self {
+        Self::between(bodies, plate, [material; 2], tip_residual)
+    }
+
+    /// The same with a body or plate of the materials `faces` at the contacts with the outer and the inner body.
+    pub fn between(
+        bodies: &[MovingBody; 2],
+        plate: &ModalBody,
+        faces: [&Material; 2],
+        tip_residual: [f64; 2],
+    ) -> Self {
         let [outer, inner] = bodies;
         let masses = [outer.mass, inner.mass];
         let mut coordinates: Vec<Coordinate> = [0, 1].map(|i| Coordinate::of_body(bodies, i, 0)).into();
@@ -134,10 +144,10 @@ impl System {
             coordinates.extend((1..body.oscillators.len()).map(|k| Coordinate::of_body(bodies, i, k)));
         }
         let each = |value: fn(&Coordinate) -> f64| coordinates.iter().map(value).collect::<Vec<f64>>();
-        let laws = [outer, inner].map(|body| Hertz::new(body.tip_radius, &body.material, material));
+        let laws = [0, 1].map(|i| Hertz::new(bodies[i].tip_radius, &bodies[i].material, faces[i]));
         let mut flexibility = plate.residual.unwrap_or(PatchFlexibility::constant([[0.0; 2]; 2]));
         let hit = HertzImpact { mass: masses[0], speed: outer.speed, stiffness: laws[0].stiffness };
-        let local_centre = LocalCentre::new(flexibility, &laws, material.plane_strain_modulus(), &hit);
+        let local_centre = LocalCentre::new(flexibility, &laws, faces[0].plane_strain_modulus(), &hit);
         for (own, tip) in flexibility.own.iter_mut().zip(tip_residual) {
             own[0] += tip;
         }

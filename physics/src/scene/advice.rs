@@ -47,6 +47,10 @@ pub(super) fn needed(kind: &Kind, path: &str) -> (&'static str, String) {
             ),
         ),
         Kind::Tables(..) => ("a list of tables", "write a list like [{ key = value }]".to_owned()),
+        Kind::Materials => (
+            "a table of materials by group",
+            "write materials like { \"name of a group\" = \"steel\" }".to_owned(),
+        ),
         Kind::Flag => ("true or false", "write true or false, without quotes".to_owned()),
         Kind::Table(_) | Kind::TableOf(_) | Kind::Tolerances | Kind::Uncertainty => {
             ("a table", format!("write a table [{path}]"))

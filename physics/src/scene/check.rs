@@ -2,7 +2,7 @@
 
 use super::advice::{alternatives, chosen, example, half_of_it, needed};
 use super::fault::{Collector, did_you_mean};
-use super::grammar::{Bound, DEFAULT_GEOMETRY, Field, Kind};
+use super::grammar::{BODY_MATERIAL, Bound, DEFAULT_GEOMETRY, Field, Kind};
 use super::place::Place;
 use super::quantity::{self, Dimension, QuantityError};
 use super::values::{Checked, PLACE, Values};
@@ -147,6 +147,7 @@ impl<'a> Checker<'a> {
             (Kind::Count(low, high), _) => self.count(place, value, *low, *high),
             (Kind::Flag, DeValue::Boolean(flag)) => Some(Checked::Flag(*flag)),
             (Kind::Material, DeValue::String(text)) => self.material(place, value, text),
+            (Kind::Materials, DeValue::Table(names)) => self.materials(place, value, names),
             (Kind::Quantities(dimension, bound, most), DeValue::Array(items)) => {
                 self.quantities(place, value, items, (*dimension, *bound), *most)
             }
@@ -267,6 +268,23 @@ impl<'a> Checker<'a> {
             did_you_mean(text, self.materials.iter().map(String::as_str))
         );
         self.fault(place, value, "which is not a material of this scene", "unknown material", help)
+    }
+
+    fn materials(&mut self, place: &Place, value: &Spanned<DeValue>, names: &DeTable) -> Option<Checked> {
+        if names.is_empty() {
+            let (_, help) = needed(&Kind::Materials, place.path);
+            return self.fault(place, value, "but it names no group", "empty", help);
+        }
+        let mut found = Values::new();
+        for (key, name) in names {
+            let path = place.key(key.get_ref());
+            let place = Place { path: &path, span: key.span() };
+            // reports every unknown name
+            if let Some(material) = self.value(&place, name, &BODY_MATERIAL) {
+                found.insert(key.get_ref().to_string(), material);
+            }
+        }
+        Some(Checked::Table(found))
     }
 
     fn count(&mut self, place: &Place, value: &Spanned<DeValue>, low: u64, high: u64) -> Option<Checked> {

@@ -77,6 +77,8 @@ pub(crate) enum Kind {
     Flag,
     /// The name of a table under `[materials]`.
     Material,
+    /// A table of such names under names of the user's choice.
+    Materials,
     /// A table with fixed keys.
     Table(&'static [Field]),
     /// A table of tables with fixed keys under names of the user's choice.

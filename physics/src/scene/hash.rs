@@ -20,13 +20,20 @@ impl Scene {
 pub fn drop_inelastic(value: &mut Value) {
     let Value::Object(map) = value else { return };
     for (key, child) in map.iter_mut() {
-        if let (true, Value::Object(material)) = (key == "material", &mut *child) {
-            material.remove("name");
-            if !material.contains_key("hardening") {
-                material.remove("yield_strength");
-            }
+        match (key.as_str(), &mut *child) {
+            ("material", material) => drop_names(material),
+            ("materials", Value::Object(groups)) => groups.values_mut().for_each(drop_names),
+            _ => {}
         }
         drop_inelastic(child);
+    }
+}
+
+fn drop_names(material: &mut Value) {
+    let Value::Object(material) = material else { return };
+    material.remove("name");
+    if !material.contains_key("hardening") {
+        material.remove("yield_strength");
     }
 }
 

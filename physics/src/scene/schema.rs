@@ -140,6 +140,9 @@ fn alternatives(fields: &[Field], kind: Option<&str>) -> Vec<Value> {
 fn value(kind: &Kind) -> Value {
     match kind {
         Kind::Text | Kind::Material => json!({ "type": "string" }),
+        Kind::Materials => json!({
+            "type": "object", "additionalProperties": value(&Kind::Material), "minProperties": 1,
+        }),
         Kind::Name => json!({
             "type": "string", "pattern": "^[A-Za-z0-9_][A-Za-z0-9._-]*$", "maxLength": MAX_NAME,
         }),

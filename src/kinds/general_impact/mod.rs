@@ -2,6 +2,7 @@
 
 mod features;
 mod from_file;
+pub mod set_up;
 
 pub use from_file::scene_of_body;
 pub use impactcheck_physics::kinds::general_impact::*;
@@ -57,8 +58,9 @@ impl super::Kind for Kind {
         scene.general_impact().is_ok_and(yields)
     }
 
-    fn objective(&self) -> &'static str {
-        "outer_restitution"
+    fn objective(&self, scene: &Scene) -> &'static str {
+        let has = |name: &str| scene.general_impact().is_ok_and(|setup| setup.has(name));
+        if has("efficiency") { "efficiency" } else { "outer_restitution" }
     }
 
     fn starts_in_contact(&self, _: &Scene) -> bool {

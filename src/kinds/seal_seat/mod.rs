@@ -34,7 +34,7 @@ impl super::Kind for Kind {
         scene.seal_seat().ok().map(|setup| setup.geometry_hash())
     }
 
-    fn objective(&self) -> &'static str {
+    fn objective(&self, _: &Scene) -> &'static str {
         INTENDED_SPEED
     }
 

@@ -3,7 +3,7 @@
 //! G. Dhondt, "CalculiX CrunchiX user's manual": \*NODE PRINT writes blocks `displacements (vx,vy,vz) for set N and time T`
 //! with a node and its values per line, \*NODE FILE blocks of nodal values in fixed columns.
 
-use crate::curves::table;
+use crate::columns;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -85,7 +85,7 @@ impl<'t> PrintedBlock<'t> {
             let (sets, time) = statistics.split_once(" and time")?;
             let sets = sets.split(',').filter_map(|set| set.split_once(" set "));
             let names: Vec<&str> = sets.map(|(_, name)| name.trim()).collect();
-            *pair = Some((names.join(" "), table::number(time.trim())?));
+            *pair = Some((names.join(" "), columns::number(time.trim())?));
             return None;
         }
         let (name, components, rest) = heading(line)?;
@@ -94,12 +94,12 @@ impl<'t> PrintedBlock<'t> {
             return Some(PrintedBlock::new(name, components, set, time));
         }
         let (set, time) = rest.strip_prefix("for set ")?.split_once(" and time")?;
-        Some(PrintedBlock::new(name, components, set.trim().to_owned(), table::number(time.trim())?))
+        Some(PrintedBlock::new(name, components, set.trim().to_owned(), columns::number(time.trim())?))
     }
 
     /// Adds a row: the numbers of nodes or elements, and one value of each component. A row of a contact pair goes on with its moments.
     fn add(&mut self, line: &str) -> Option<()> {
-        let values: Vec<f64> = line.split_whitespace().map(table::number).collect::<Option<_>>()?;
+        let values: Vec<f64> = line.split_whitespace().map(columns::number).collect::<Option<_>>()?;
         let count = self.components.len();
         let own = match values.len() {
             n if n == count || n == count + 1 => &values[n - count..],
@@ -154,7 +154,7 @@ pub(super) fn frd(text: &str, requested: &[&str]) -> Result<String, String> {
             || format!("line {}: `{}` is no line of a .frd file in text form", number + 1, line.trim_end());
         match line.get(..5).map(str::trim) {
             Some("100C") | Some("100") => {
-                time = part(line, 12, 12).and_then(table::number).ok_or_else(fault)?;
+                time = part(line, 12, 12).and_then(columns::number).ok_or_else(fault)?;
                 field.clear();
             }
             Some("-4") => {
@@ -209,7 +209,7 @@ fn packed(text: &str) -> Option<Vec<f64>> {
     let mut begins: Vec<usize> =
         text.match_indices('.').map(|(point, _)| begins(point)).collect::<Option<_>>()?;
     begins.push(text.len());
-    let values = begins.windows(2).map(|pair| table::number(text[pair[0]..pair[1]].trim_end()));
+    let values = begins.windows(2).map(|pair| columns::number(text[pair[0]..pair[1]].trim_end()));
     text[..begins[0]].trim().is_empty().then(|| values.collect())?
 }
 

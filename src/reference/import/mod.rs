@@ -2,19 +2,17 @@
 //! they come from.
 
 mod calculix;
-mod mapping;
 
 use super::entry::{self, Origin, Stored};
 use super::store::Installed;
 use super::{Resolution, Store, identity};
-use crate::curves::table::{self, Columns};
+use crate::columns::{self, Columns, Map, decoded};
 use crate::external;
 use crate::kinds;
 use crate::result::{History, Outcome, Summary, Table};
 use crate::scene::Scene;
 use crate::scene::hash::sha256_hex;
 use crate::{Error, Result};
-use mapping::{Form, Mapping};
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
@@ -42,8 +40,8 @@ pub fn read_import(scene: &Scene, file: &Path, map: Option<&Path>) -> Result<Imp
     let map_text = map.map(read).transpose()?.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
     let unusable = |path: &Path, reason: String| Error::Reference(format!("{}: {reason}", path.display()));
     let of_map = |reason| unusable(map.unwrap_or(file), reason);
-    let mapping = Mapping::parse(map_text.as_deref().unwrap_or_default()).map_err(of_map)?;
-    let stated = mapping.stated(kinds::of(scene)).map_err(of_map)?;
+    let mapping = Map::parse(map_text.as_deref().unwrap_or_default()).map_err(of_map)?;
+    let stated = mapping.stated(kinds::of(scene).quantities()).map_err(of_map)?;
     let history = history(scene, file, &bytes, &mapping).map_err(|reason| unusable(file, reason))?;
     let outcome = outcome(scene, &mapping, stated, history);
     let provenance = json!({
@@ -75,57 +73,22 @@ impl Imported {
 }
 
 /// The curves of a file of any of the forms known, from the first touch on.
-fn history(
-    scene: &Scene,
-    file: &Path,
-    bytes: &[u8],
-    mapping: &Mapping,
-) -> std::result::Result<History, String> {
-    let text = std::str::from_utf8(bytes).map_err(|e| format!("is no text in UTF-8: {e}"))?;
-    let text = text.trim_start_matches(table::BYTE_ORDER_MARK);
+fn history(scene: &Scene, file: &Path, bytes: &[u8], mapping: &Map) -> std::result::Result<History, String> {
+    let text = decoded(bytes, mapping.table.encoding.as_deref())?;
     let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let comma = Form::default();
-    let (text, form) = match ending.as_deref() {
-        Some("dat") => (calculix::dat(text)?, &comma),
-        Some("frd") => (calculix::frd(text, &mapping.headings())?, &comma),
-        _ => plain(text, &mapping.table)?,
-    };
-    let delimiter = if form.delimiter == "spaces" { "," } else { &form.delimiter };
-    let &[delimiter] = delimiter.as_bytes() else {
-        return Err(format!("table.delimiter is `{delimiter}`, but it must be one character or `spaces`"));
+    let text = match ending.as_deref() {
+        Some("dat") => calculix::dat(&text)?.into(),
+        Some("frd") => calculix::frd(&text, &mapping.headings())?.into(),
+        _ => text,
     };
     let kind = kinds::of(scene);
-    let mut reader = table::csv_reader(text.as_bytes(), delimiter);
-    let header = reader.headers().map_err(|e| format!("line 1: {e}"))?.clone();
-    let columns = mapping.columns(kind, &header.iter().collect::<Vec<_>>())?;
-    external::assembled(kind, from_first_contact(table::read(&mut reader, &columns, FEWEST)?)?)
-}
-
-/// A table of text as CSV with headings, which are numbers where it has none. Every line keeps its place.
-fn plain<'f>(text: &str, form: &'f Form) -> std::result::Result<(String, &'f Form), String> {
-    let spaces = form.delimiter == "spaces";
-    let separated = |(k, line): (usize, &str)| match spaces {
-        _ if k < form.skip => String::new(),
-        true => line.split_whitespace().collect::<Vec<_>>().join(","),
-        false => line.trim_end().to_owned(),
-    };
-    let mut lines: Vec<String> = text.lines().enumerate().map(separated).collect();
-    if !form.headings {
-        let first = lines.iter().position(|line| !line.is_empty()).ok_or("has no row")?;
-        let separator = if spaces { "," } else { &form.delimiter };
-        let count = lines[first].split(separator).count();
-        let headings = (1..=count).map(|k| k.to_string()).collect::<Vec<_>>().join(separator);
-        match first.checked_sub(1) {
-            Some(blank) => lines[blank] = headings,
-            None => lines.insert(0, headings),
-        }
-    }
-    Ok((lines.join("\n"), form))
+    let found = columns::read(&text, mapping, kind.curves(), FEWEST)?;
+    external::assembled(kind, from_first_contact(found.columns)?)
 }
 
 /// The columns from t = 0 on, where a sample is put if there is none.
 fn from_first_contact(columns: Columns) -> std::result::Result<Columns, String> {
-    let Columns { time, values } = columns;
+    let Columns { time, values, gaps, integrals } = columns;
     let first = time.partition_point(|t| *t < 0.0);
     if first == time.len() || (first == 0 && time[0] > 0.0) {
         return Err(format!(
@@ -136,7 +99,7 @@ fn from_first_contact(columns: Columns) -> std::result::Result<Columns, String> 
     }
     if time[first] == 0.0 {
         let values = values.into_iter().map(|(name, values)| (name, values[first..].to_vec())).collect();
-        return Ok(Columns { time: time[first..].to_vec(), values });
+        return Ok(Columns { time: time[first..].to_vec(), values, gaps, integrals });
     }
     let share = -time[first - 1] / (time[first] - time[first - 1]);
     let from_zero =
@@ -145,14 +108,19 @@ fn from_first_contact(columns: Columns) -> std::result::Result<Columns, String> 
         let at_zero = values[first - 1] + share * (values[first] - values[first - 1]);
         (name, from_zero(at_zero, &values[first..]))
     };
-    Ok(Columns { time: from_zero(0.0, &time[first..]), values: values.into_iter().map(cut).collect() })
+    Ok(Columns {
+        time: from_zero(0.0, &time[first..]),
+        values: values.into_iter().map(cut).collect(),
+        gaps,
+        integrals,
+    })
 }
 
 type Numbers = std::collections::BTreeMap<String, f64>;
 
 fn outcome(
     scene: &Scene,
-    mapping: &Mapping,
+    mapping: &Map,
     [quantities, uncertainty]: [Numbers; 2],
     history: History,
 ) -> Outcome {

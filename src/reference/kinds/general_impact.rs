@@ -47,8 +47,9 @@ pub fn body_mesh(request: &MeshRequest) -> Result<PathBuf> {
     if !is_intact(&made) {
         return Err(Error::Solver("the mesher wrote no mesh with its description".into()));
     }
-    let (file, content) = &request.file;
-    if general_impact::content(file).ok().as_ref() != Some(content) {
+    if let Some((file, content)) = &request.file
+        && general_impact::content(file).ok().as_ref() != Some(content)
+    {
         return Err(Error::Scene(miette::miette!(
             "`body.file` changed while {} was meshed: run again",
             file.display()

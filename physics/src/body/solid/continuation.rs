@@ -54,11 +54,17 @@ impl SquareLaw {
 }
 
 impl StruckSolid {
-    /// The body of `material` as contacts of the radii `patch` in m see it; the second belongs to an inner body, along whose contact z points
-    /// into the body. Each mode has this `damping_ratio`.
+    /// The body whose first material is `material`, and that of its `faces` at the contacts, as contacts of the radii `patch` in m see it; the
+    /// second belongs to an inner body, along whose contact z points into the body. Each mode has this `damping_ratio`.
     ///
     /// Modes move the contacts as under these patches; the static flexibility follows the patch.
-    pub fn modal_body(&self, material: &Material, patch: [f64; 2], damping_ratio: f64) -> ModalBody {
+    pub fn modal_body(
+        &self,
+        material: &Material,
+        faces: [&Material; 2],
+        patch: [f64; 2],
+        damping_ratio: f64,
+    ) -> ModalBody {
         let body = self.of_material(material);
         let is_struck = self.circles.map(|circles| circles[0] > 0.0);
         let sides = [1.0, -1.0];
@@ -80,7 +86,7 @@ impl StruckSolid {
         flexibility.per_square = patch.map(|radius| radius.powi(-2));
         for k in (0..2).filter(|k| is_struck[*k]) {
             let beyond = std::array::from_fn(|m| {
-                body.own[k][m] - half_space_flexibility(material, self.circles[k][m])
+                body.own[k][m] - half_space_flexibility(faces[k], self.circles[k][m])
             });
             let line = SquareLaw::without_mesh(beyond, self.circles[k]);
             flexibility.own[k][0] = line.value - of_modes(k, k);

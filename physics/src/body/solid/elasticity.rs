@@ -1,6 +1,7 @@
 //! Linear elasticity of straight tetrahedra: stiffness and lumped mass of a body without supports.
 
 use super::curved;
+use super::materials::CellMaterials;
 use super::mesh::{EDGES, TetMesh, volume};
 use crate::scene::Material;
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
@@ -31,15 +32,15 @@ pub(super) struct SolidMatrices {
 
 impl SolidMatrices {
     /// Integrates all elements of `mesh`.
-    pub fn new(mesh: &TetMesh, material: &Material) -> Self {
+    pub fn new(mesh: &TetMesh, materials: &CellMaterials) -> Self {
         let (start, column) = sparsity(mesh);
-        let lame = Lame::of(material);
         let mut stiffness = vec![[0.0; 9]; column.len()];
         // a share of the elements at a time: those of a large mesh would take more memory than the matrix
-        for cells in mesh.cells.chunks(AT_A_TIME * mesh.nodes_per_cell()) {
-            let cells = cells.par_chunks(mesh.nodes_per_cell());
+        for (share, cells) in mesh.cells.chunks(AT_A_TIME * mesh.nodes_per_cell()).enumerate() {
+            let cells = cells.par_chunks(mesh.nodes_per_cell()).enumerate();
+            let lame = |k: usize| Lame::of(materials.of(share * AT_A_TIME + k));
             let elements: Vec<(&[usize], Vec<Block>)> =
-                cells.map(|cell| (cell, element_stiffness(mesh, cell, lame))).collect();
+                cells.map(|(k, cell)| (cell, element_stiffness(mesh, cell, lame(k)))).collect();
             for (cell, element) in elements {
                 for (row, blocks) in cell.iter().zip(element.chunks_exact(cell.len())) {
                     let columns = &column[start[*row]..start[row + 1]];
@@ -50,17 +51,18 @@ impl SolidMatrices {
                 }
             }
         }
-        Self { start, column, stiffness, mass: lumped_mass(mesh, material.density) }
+        Self { start, column, stiffness, mass: lumped_mass(mesh, materials) }
     }
 
-    /// Consistent mass in kg of the quadratic elements of `mesh` with this `density` in kg/m^3, between the nodes that are coupled, in the
-    /// order of the rows: the same for all three displacements.
-    pub fn consistent_mass(&self, mesh: &TetMesh, density: f64) -> Vec<f64> {
+    /// Consistent mass in kg of the quadratic elements of `mesh`, between the nodes that are coupled, in the order of the rows: the same for
+    /// all three displacements.
+    pub fn consistent_mass(&self, mesh: &TetMesh, materials: &CellMaterials) -> Vec<f64> {
         let mut mass = vec![0.0; self.column.len()];
-        for cells in mesh.cells.chunks(AT_A_TIME * curved::NODES) {
+        for (share, cells) in mesh.cells.chunks(AT_A_TIME * curved::NODES).enumerate() {
             let cells = cells.par_chunks(curved::NODES);
             let elements: Vec<_> = cells.map(|cell| (cell, curved::mass(&mesh.places(cell)))).collect();
-            for (cell, element) in elements {
+            for (k, (cell, element)) in elements.into_iter().enumerate() {
+                let density = materials.of(share * AT_A_TIME + k).density;
                 for (row, values) in cell.iter().zip(element.chunks_exact(cell.len())) {
                     let columns = &self.column[self.start[*row]..self.start[row + 1]];
                     for (node, value) in cell.iter().zip(values) {
@@ -163,11 +165,11 @@ impl Lame {
 /// In proportion to the diagonal of the consistent mass (Hinton, Rock & Zienkiewicz 1976, Earthquake Eng. Struct.
 /// Dyn. 4, 245), for a straight quadratic tetrahedron 6 : 32, as the finite-element reference does it: on one mesh both are
 /// the same discrete system. Row sums would make the corners' masses negative.
-fn lumped_mass(mesh: &TetMesh, density: f64) -> Vec<f64> {
+fn lumped_mass(mesh: &TetMesh, materials: &CellMaterials) -> Vec<f64> {
     let (corner, midside) = if mesh.order == 1 { (0.25, 0.0) } else { (1.0 / 36.0, 4.0 / 27.0) };
     let mut mass = vec![0.0; mesh.points.len()];
-    for cell in mesh.cells() {
-        let whole = density * volume(&mesh.corners(cell));
+    for (number, cell) in mesh.cells().enumerate() {
+        let whole = materials.of(number).density * volume(&mesh.corners(cell));
         cell[..4].iter().for_each(|&node| mass[node] += corner * whole);
         cell[4..].iter().for_each(|&node| mass[node] += midside * whole);
     }
@@ -264,7 +266,7 @@ mod tests {
     fn rigid_motions_need_no_force() {
         for order in [1, 2] {
             let mesh = sheared(order);
-            let matrices = SolidMatrices::new(&mesh, &material());
+            let matrices = SolidMatrices::new(&mesh, &CellMaterials::one(material()));
             let scale = 2.6e9 * 3.0;
             for axis in 0..3 {
                 let mut omega = Vector3::zeros();
@@ -288,7 +290,7 @@ mod tests {
         let density = 0.5 * lambda * strain.trace().powi(2) + mu * strain.norm_squared();
         for order in [1, 2] {
             let mesh = sheared(order);
-            let matrices = SolidMatrices::new(&mesh, &material());
+            let matrices = SolidMatrices::new(&mesh, &CellMaterials::one(material()));
             let u: Vec<_> = mesh.points.iter().map(|p| gradient * p).collect();
             let force = forces(&matrices, &u);
             let whole: f64 = mesh.cells().map(|cell| volume(&mesh.corners(cell))).sum();
@@ -308,7 +310,7 @@ mod tests {
     fn masses_are_positive_and_add_up() {
         for order in [1, 2] {
             let mesh = sheared(order);
-            let matrices = SolidMatrices::new(&mesh, &material());
+            let matrices = SolidMatrices::new(&mesh, &CellMaterials::one(material()));
             let whole: f64 = mesh.cells().map(|cell| volume(&mesh.corners(cell))).sum();
             assert_relative_eq!(matrices.mass.iter().sum::<f64>(), 1320.0 * whole, max_relative = 1e-13);
             assert!(matrices.mass.iter().all(|m| *m > 0.0));

@@ -76,13 +76,12 @@ impl TetMesh {
         Self::new(points, cells, order).map_err(|what| unusable(path, &what))
     }
 
-    /// Volume in m^3.
-    pub fn volume(&self) -> f64 {
-        let of = |cell: &[usize]| {
+    /// Volume of each cell in m^3.
+    pub fn volumes(&self) -> impl Iterator<Item = f64> {
+        self.cells().map(|cell| {
             self.bent_places(cell)
                 .map_or_else(|| volume(&self.corners(cell)), |places| curved::volume(&places))
-        };
-        self.cells().map(of).sum()
+        })
     }
 
     /// Number of nodes of a cell, 4 or 10.

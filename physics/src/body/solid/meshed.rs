@@ -19,6 +19,10 @@ pub struct BodyMesh {
     pub mesh: TetMesh,
     /// Which nodes do not move. Shape (nodes).
     pub fixed: Vec<bool>,
+    /// Names of the materials; none for a body of one material.
+    pub materials: Vec<String>,
+    /// Number of each cell's material in that list. Shape (cells), or empty without names.
+    pub material_of_cell: Vec<usize>,
 }
 
 /// The surface of a body where it is struck.
@@ -45,12 +49,19 @@ pub struct ContactInfo {
     /// Distance in m to the nearest edge of the face; infinite where it has none.
     #[serde(deserialize_with = "or_infinite")]
     pub edge_distance: f64,
+    /// Name of the material there; `None` for a body of one material.
+    pub material: Option<String>,
+    /// Distance in m to the nearest other material; infinite where there is none.
+    #[serde(default = "infinite", deserialize_with = "or_infinite")]
+    pub material_distance: f64,
 }
 
 /// What models need of the description of a mesh.
 #[derive(Deserialize)]
 struct BodyMeshInfo {
+    bounding_box: [[f64; 3]; 2],
     contacts: Contacts,
+    materials: Vec<String>,
 }
 
 /// Where outer and inner body strike.
@@ -60,8 +71,12 @@ struct Contacts {
     inner: Option<ContactInfo>,
 }
 
+fn infinite() -> f64 {
+    f64::INFINITY
+}
+
 fn or_infinite<'de, D: serde::Deserializer<'de>>(value: D) -> std::result::Result<f64, D::Error> {
-    Ok(Option::<f64>::deserialize(value)?.unwrap_or(f64::INFINITY))
+    Ok(Option::<f64>::deserialize(value)?.unwrap_or_else(infinite))
 }
 
 impl BodyMesh {
@@ -73,8 +88,24 @@ impl BodyMesh {
         let file = MeshFile::read(path)?;
         let missing = || unusable(path, "has no array `fixed` of its nodes");
         let fixed = file.point_array("fixed").ok_or_else(missing)?.iter().map(|value| *value != 0).collect();
+        let materials = description(path)?.materials;
+        let numbers = file.cell_array("material").filter(|_| !materials.is_empty());
+        let material_of_cell: Vec<usize> = numbers.unwrap_or_default().iter().map(|n| *n as usize).collect();
         let mesh = TetMesh::curved(file.points, file.cells).map_err(|what| unusable(path, &what))?;
-        Ok(Self { mesh, fixed })
+        let expected = if materials.is_empty() { 0 } else { mesh.cells().len() };
+        if material_of_cell.len() != expected || material_of_cell.iter().any(|own| *own >= materials.len()) {
+            return Err(unusable(path, "has cells whose material is not described"));
+        }
+        Ok(Self { mesh, fixed, materials, material_of_cell })
+    }
+
+    /// Lengths in m of the box around the body, as the description of the mesh file at `path` has it.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if it can't be read.
+    pub fn lengths(path: &Path) -> Result<[f64; 3]> {
+        let [least, most] = description(path)?.bounding_box;
+        Ok([0, 1, 2].map(|c| most[c] - least[c]))
     }
 
     /// The contacts that the description of the mesh file at `path` names: that of the outer body, and of the inner one if it has one.
@@ -82,19 +113,23 @@ impl BodyMesh {
     /// # Errors
     /// [`Error::Solver`] if it can't be read.
     pub fn contacts(path: &Path) -> Result<Vec<ContactInfo>> {
-        let path = path.with_extension("json");
-        let text = std::fs::read_to_string(&path).map_err(|e| Error::io("reading", &path, e))?;
-        let info: BodyMeshInfo = serde_json::from_str(&text)
-            .map_err(|e| unusable(&path, &format!("is no description of a mesh: {e}")))?;
-        Ok([Some(info.contacts.outer), info.contacts.inner].into_iter().flatten().collect())
+        let Contacts { outer, inner } = description(path)?.contacts;
+        Ok([Some(outer), inner].into_iter().flatten().collect())
     }
+}
+
+/// The description of the mesh file at `path`.
+fn description(path: &Path) -> Result<BodyMeshInfo> {
+    let path = path.with_extension("json");
+    let text = std::fs::read_to_string(&path).map_err(|e| Error::io("reading", &path, e))?;
+    serde_json::from_str(&text).map_err(|e| unusable(&path, &format!("is no description of a mesh: {e}")))
 }
 
 impl ContactInfo {
     /// The place, and the circles on which the flexibility is found.
     pub fn struck(&self) -> StruckPoint {
         let largest = CIRCLES[2] * self.element_size;
-        let bound = (OF_WALL * self.wall).min(OF_EDGE * self.edge_distance);
+        let bound = (OF_WALL * self.wall.min(self.material_distance)).min(OF_EDGE * self.edge_distance);
         let scale = (bound / largest).min(1.0);
         StruckPoint {
             at: SurfacePoint { point: Vector3::from(self.point), normal: Vector3::from(self.normal) },

@@ -8,6 +8,7 @@ mod continuation;
 mod curved;
 mod elasticity;
 mod factor;
+mod materials;
 mod mesh;
 mod meshed;
 mod morph;
@@ -16,6 +17,7 @@ mod struck;
 mod surface;
 mod view;
 
+pub use materials::CellMaterials;
 pub use mesh::TetMesh;
 #[cfg(test)]
 pub(crate) use mesh::boxes;
@@ -72,7 +74,7 @@ impl Solid {
         fixed: &[[bool; 3]],
         interface: &[usize],
     ) -> Result<Self> {
-        let matrices = SolidMatrices::new(mesh, material);
+        let matrices = SolidMatrices::new(mesh, &CellMaterials::one(material.clone()));
         let mut size = 0;
         let dof: Vec<[usize; 3]> = fixed
             .iter()

@@ -5,6 +5,7 @@
 
 use super::elasticity::SolidMatrices;
 use super::factor::Factor;
+use super::materials::CellMaterials;
 use super::mesh::{EDGES, TetMesh, volume};
 use super::surface::Surface;
 use crate::error::{Error, Result};
@@ -31,7 +32,10 @@ impl TetMesh {
         let (corners, body) = self.corners_alone();
         let surfaces: Vec<&[Surface]> = corners.iter().map(|node| &surfaces[*node][..]).collect();
         let mut displaced = body.points.clone();
-        let matrices = SolidMatrices::new(&body, &Material::elastic("mesh", 1.0, POISSON_RATIO, 1.0));
+        let matrices = SolidMatrices::new(
+            &body,
+            &CellMaterials::one(Material::elastic("mesh", 1.0, POISSON_RATIO, 1.0)),
+        );
         let pull = PULL * matrices.stiffest();
         for _ in 0..ROUNDS {
             let (mut pulled, mut load) = (matrices.clone(), vec![0.0; 3 * displaced.len()]);

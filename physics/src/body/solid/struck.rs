@@ -6,6 +6,7 @@
 
 use super::elasticity::{FIXED, SolidMatrices};
 use super::factor::Factor;
+use super::materials::CellMaterials;
 use super::mesh::TetMesh;
 use super::pressure::{HertzLoad, SurfaceAround, SurfacePoint};
 use crate::body::continuum::lanczos::{ShiftInvert, lowest_modes};
@@ -42,7 +43,8 @@ pub struct StruckPoint {
     pub circles: [f64; 3],
 }
 
-/// A body reduced to what its contacts see, of Young's modulus 1 Pa and density 1 kg/m^3; [`StruckSolid::of_material`] scales.
+/// A body reduced to what its contacts see, its first material of Young's modulus 1 Pa and density 1 kg/m^3; [`StruckSolid::of_material`]
+/// scales.
 ///
 /// Under the forces f_i against the normals it moves along them by sum_k q_k participation and the static flexibility beyond.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -59,13 +61,13 @@ pub struct StruckSolid {
     pub mutual: [[f64; 3]; 3],
     /// Radii of the circles in m. Shape (2, 3).
     pub circles: [[f64; 3]; 2],
-    /// Volume in m^3.
-    pub volume: f64,
+    /// Mass in kg.
+    pub mass: f64,
     /// Degrees of freedom of the mesh without those that supports hold.
     pub dofs: usize,
 }
 
-/// The discrete body, of Young's modulus 1 Pa and density 1 kg/m^3, factorised.
+/// The discrete body, its first material of Young's modulus 1 Pa and density 1 kg/m^3, factorised.
 pub(super) struct Statics {
     matrices: SolidMatrices,
     stiffness: SparseColMat<usize, f64>,
@@ -81,12 +83,18 @@ pub(super) struct Statics {
 }
 
 impl StruckSolid {
-    /// Of `mesh` with `poisson_ratio`, whose nodes `fixed` do not move, struck at `points`, one or two.
+    /// Of `mesh` of `materials`, whose nodes `fixed` do not move, struck at `points`, one or two.
     ///
     /// # Errors
     /// [`Error::Solver`] if the body is held so that it can still move, or a circle leaves the face.
-    pub fn new(mesh: &TetMesh, poisson_ratio: f64, fixed: &[bool], points: &[StruckPoint]) -> Result<Self> {
-        let statics = Statics::new(mesh, poisson_ratio, fixed)?;
+    pub fn new(
+        mesh: &TetMesh,
+        materials: &CellMaterials,
+        fixed: &[bool],
+        points: &[StruckPoint],
+    ) -> Result<Self> {
+        let materials = materials.relative();
+        let statics = Statics::new(mesh, &materials, fixed)?;
         let mut loads: Vec<[HertzLoad; 3]> = Vec::new();
         for (k, struck) in points.iter().enumerate() {
             let face = SurfaceAround::around(mesh, struck.at, struck.circles[2]);
@@ -121,7 +129,7 @@ impl StruckSolid {
             own: [[0.0; 3]; 2],
             mutual: [[0.0; 3]; 3],
             circles: [0, 1].map(|k| points.get(k).map_or([0.0; 3], |struck| struck.circles)),
-            volume: mesh.volume(),
+            mass: materials.mass(mesh),
             dofs: statics.size,
         };
         let mut start = Vec::new();
@@ -152,7 +160,7 @@ impl StruckSolid {
         Ok(body)
     }
 
-    /// The same of a body with the Young's modulus and density of `material`.
+    /// The same of a body whose first material is `material`.
     #[must_use]
     pub fn of_material(&self, material: &Material) -> Self {
         let (stiffer, heavier) = (material.youngs_modulus, material.density);
@@ -162,6 +170,7 @@ impl StruckSolid {
         participations.chain(body.rigid.iter_mut().flatten()).for_each(|value| *value /= heavier.sqrt());
         let flexibilities = body.own.iter_mut().flatten().chain(body.mutual.iter_mut().flatten());
         flexibilities.for_each(|value| *value /= stiffer);
+        body.mass *= heavier;
         body
     }
 }
@@ -187,9 +196,10 @@ fn seen_rigid(rigid: &[Vec<f64>], contacts: usize, seen: impl Fn(usize, &[f64]) 
 }
 
 impl Statics {
-    pub(super) fn new(mesh: &TetMesh, poisson_ratio: f64, fixed: &[bool]) -> Result<Self> {
-        let matrices = SolidMatrices::new(mesh, &Material::elastic("unit", 1.0, poisson_ratio, 1.0));
-        let mass = matrices.consistent_mass(mesh, 1.0);
+    /// Of `mesh` of `materials`, relative ones.
+    pub(super) fn new(mesh: &TetMesh, materials: &CellMaterials, fixed: &[bool]) -> Result<Self> {
+        let matrices = SolidMatrices::new(mesh, materials);
+        let mass = matrices.consistent_mass(mesh, materials);
         let mut size = 0;
         let number = |fixed: &bool| {
             [0; 3].map(|_| {
@@ -340,14 +350,24 @@ impl ShiftInvert for Statics {
     }
 }
 
-/// The `count` lowest elastic eigenfrequencies in Hz of `mesh` of `material`, whose nodes `fixed` do not move.
+/// The `count` lowest elastic eigenfrequencies in Hz of `mesh` of `materials`, whose nodes `fixed` do not move.
 ///
 /// # Errors
 /// [`Error::Solver`] if the body is held so that it can still move, or the mesh has not enough modes.
-pub fn frequencies(mesh: &TetMesh, material: &Material, fixed: &[bool], count: usize) -> Result<Vec<f64>> {
-    let statics = Statics::new(mesh, material.poisson_ratio, fixed)?;
-    let unit = (material.youngs_modulus / material.density).sqrt() / std::f64::consts::TAU;
+pub fn frequencies(
+    mesh: &TetMesh,
+    materials: &CellMaterials,
+    fixed: &[bool],
+    count: usize,
+) -> Result<Vec<f64>> {
+    let statics = Statics::new(mesh, &materials.relative(), fixed)?;
+    let unit = hertz_of_unit(&materials.materials[0]);
     Ok(lowest_modes(&statics, count, f64::INFINITY)?.omega.into_iter().map(|omega| unit * omega).collect())
+}
+
+/// Frequency in Hz of 1 rad/s of a body of Young's modulus 1 Pa and density 1 kg/m^3, if it is of `material` instead.
+pub(super) fn hertz_of_unit(material: &Material) -> f64 {
+    (material.youngs_modulus / material.density).sqrt() / std::f64::consts::TAU
 }
 
 /// The six rigid motions of a mesh without supports. Shape (6, 3 nodes).

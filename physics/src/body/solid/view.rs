@@ -2,11 +2,11 @@
 
 use super::curved;
 use super::elasticity::FIXED;
+use super::materials::CellMaterials;
 use super::mesh::TetMesh;
 use super::pressure::{SurfaceAround, SurfacePoint};
-use super::struck::{Statics, StruckPoint};
+use super::struck::{Statics, StruckPoint, hertz_of_unit};
 use crate::error::Result;
-use crate::scene::Material;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -36,12 +36,18 @@ pub struct BodyView {
 }
 
 impl BodyView {
-    /// Of `mesh` of `material`, whose nodes `fixed` do not move, struck at `points`.
+    /// Of `mesh` of `materials`, whose nodes `fixed` do not move, struck at `points`.
     ///
     /// # Errors
     /// As [`super::StruckSolid::new`].
-    pub fn new(mesh: &TetMesh, material: &Material, fixed: &[bool], points: &[StruckPoint]) -> Result<Self> {
-        let statics = Statics::new(mesh, material.poisson_ratio, fixed)?;
+    pub fn new(
+        mesh: &TetMesh,
+        materials: &CellMaterials,
+        fixed: &[bool],
+        points: &[StruckPoint],
+    ) -> Result<Self> {
+        let relative = materials.relative();
+        let statics = Statics::new(mesh, &relative, fixed)?;
         let load = |point: &StruckPoint| {
             let SurfacePoint { normal, .. } = point.at;
             let pressed = SurfaceAround::around(mesh, point.at, point.circles[2]).pressed(point.circles[1]);
@@ -50,10 +56,9 @@ impl BodyView {
             u
         };
         let start: Vec<Vec<f64>> = points.iter().map(load).collect();
-        let stress = start.first().map_or_else(
-            || vec![0.0; mesh.points.len()],
-            |u| nodal_stress(mesh, material.poisson_ratio, &statics.dof, u),
-        );
+        let stress = start
+            .first()
+            .map_or_else(|| vec![0.0; mesh.points.len()], |u| nodal_stress(mesh, &relative, &statics.dof, u));
         let (omega, shapes) = statics.ritz(start)?;
         let faces = mesh.outer_faces();
         let mut number: BTreeMap<usize, u32> = BTreeMap::new();
@@ -80,7 +85,7 @@ impl BodyView {
             let at = |node: &usize| statics.dof[*node].map(|dof| if dof == FIXED { 0.0 } else { shape[dof] });
             let moved: Vec<[f64; 3]> = nodes.iter().map(at).collect();
             let most = moved.iter().map(|u| Vector3::from(*u).norm()).fold(f64::MIN_POSITIVE, f64::max);
-            let hertz = omega * (material.youngs_modulus / material.density).sqrt() / std::f64::consts::TAU;
+            let hertz = omega * hertz_of_unit(&materials.materials[0]);
             (hertz, moved.into_iter().map(|u| u.map(|value| value / most)).collect())
         });
         Ok(Self {
@@ -94,12 +99,13 @@ impl BodyView {
     }
 }
 
-/// Von Mises stress at the nodes in Pa under the displacements `u` in m of a body of Young's modulus 1 Pa, the mean of the elements there. The
-/// modulus of the body itself cancels out: u is of that body, too.
-fn nodal_stress(mesh: &TetMesh, poisson_ratio: f64, dof: &[[usize; 3]], u: &[f64]) -> Vec<f64> {
+/// Von Mises stress at the nodes in Pa under the displacements `u` in m of a body of the relative `materials`, the mean of the elements there. The
+/// first material's modulus itself cancels out: u is of that body, too.
+fn nodal_stress(mesh: &TetMesh, materials: &CellMaterials, dof: &[[usize; 3]], u: &[f64]) -> Vec<f64> {
     let mut sums = vec![(0.0, 0_u32); mesh.points.len()];
-    let shear = 1.0 / (2.0 * (1.0 + poisson_ratio));
-    for cell in mesh.cells() {
+    for (number, cell) in mesh.cells().enumerate() {
+        let material = materials.of(number);
+        let shear = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
         let places = mesh.places(cell);
         let moved = std::array::from_fn(|a| {
             Vector3::from(dof[cell[a]].map(|dof| if dof == FIXED { 0.0 } else { u[dof] }))
@@ -135,6 +141,7 @@ fn sharp_edges(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
 mod tests {
     use super::super::mesh::boxes;
     use super::*;
+    use crate::scene::Material;
 
     /// A block that is pressed on its whole face by a uniform strain has that stress everywhere; its edges are those of the box.
     #[test]
@@ -142,14 +149,14 @@ mod tests {
         let mesh = boxes([2.0, 1.0, 1.0], [2, 1, 1], 2, |p| p);
         let dof: Vec<[usize; 3]> = (0..mesh.points.len()).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
         let u: Vec<f64> = mesh.points.iter().flat_map(|p| [1e-3 * p.x, -3e-4 * p.y, -3e-4 * p.z]).collect();
+        let steel = CellMaterials::one(Material::elastic("m", 1.0, 0.3, 1.0));
         // uniaxial: E = 1 Pa
-        let stress = nodal_stress(&mesh, 0.3, &dof, &u);
+        let stress = nodal_stress(&mesh, &steel, &dof, &u);
         assert!(stress.iter().all(|stress| (stress - 1e-3).abs() < 1e-15), "{stress:?}");
         let fixed: Vec<bool> = mesh.points.iter().map(|p| p.x == 0.0).collect();
-        let material = Material::elastic("m", 1.0, 0.3, 1.0);
         let at = SurfacePoint { point: Vector3::new(2.0, 0.5, 0.5), normal: Vector3::x() };
         let view =
-            BodyView::new(&mesh, &material, &fixed, &[StruckPoint { at, circles: [0.2, 0.3, 0.4] }]).unwrap();
+            BodyView::new(&mesh, &steel, &fixed, &[StruckPoint { at, circles: [0.2, 0.3, 0.4] }]).unwrap();
         // the long edges consist of four pieces each, the short ones of two
         assert_eq!(view.edges.len(), 4 * 4 + 8 * 2);
         assert_eq!(view.triangles.len(), 4 * mesh.outer_faces().len());

@@ -235,13 +235,11 @@ pub struct OnsetOfYield {
 }
 
 impl OnsetOfYield {
-    /// Of the `materials` of outer body, plate and inner body, as [`Memory::new`]; `None` if no yield strength is known.
-    pub fn new(materials: [&Material; 3], bending: Option<Bending>, system: &System) -> Option<Self> {
-        let [outer, plate, inner] = materials;
-        let bodies = [outer, inner];
+    /// Of the materials that meet at the contact of the outer and of the inner body, each body's first; `None` if no yield strength is
+    /// known.
+    pub fn new(pairs: [[&Material; 2]; 2], bending: Option<Bending>, system: &System) -> Option<Self> {
         let contacts = [0, 1].map(|i| {
-            let pair = [bodies[i], plate];
-            DentedContact::new(system.laws[i], pair, pair.map(|m| m.yield_strength))
+            DentedContact::new(system.laws[i], pairs[i], pairs[i].map(|m| m.yield_strength))
                 .filter(|_| system.can_close(i))
         });
         contacts.iter().any(Option::is_some).then_some(Self { contacts, bending })

@@ -3,10 +3,13 @@
 use crate::error::{Error, Result};
 use crate::material::Material;
 use crate::scene::hash::{canonical, sha256_hex};
+use crate::scene::material::material;
 use crate::scene::values::{Checked, Node, PLACE, Values};
+use crate::scene::{Edge, Plate};
 use serde::Serialize;
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -29,6 +32,68 @@ pub enum BodyPlace {
     Point([f64; 3]),
 }
 
+/// What a body consists of.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BodyMaterials {
+    /// The same material everywhere.
+    Material(Material),
+    /// The material of each group of elements, by the group's name in the file.
+    Materials(BTreeMap<String, Material>),
+}
+
+impl BodyMaterials {
+    /// Reads `material` or `materials` of the checked table `body`.
+    fn read(body: &Node, materials: &Node) -> Result<Self> {
+        let Some(groups) = body.optional_table("materials")? else {
+            return Ok(Self::Material(material(materials, body.text("material")?)?));
+        };
+        let of = |group: &String| Ok((group.clone(), material(materials, groups.text(group)?)?));
+        groups.0.keys().map(of).collect::<Result<_>>().map(Self::Materials)
+    }
+
+    /// Each material once, whatever its names, ordered by the names of the groups.
+    pub fn all(&self) -> Vec<&Material> {
+        let mut found: Vec<&Material> = Vec::new();
+        let groups = match self {
+            Self::Material(material) => return vec![material],
+            Self::Materials(groups) => groups,
+        };
+        for material in groups.values() {
+            if !found.iter().any(|other| is_same(other, material)) {
+                found.push(material);
+            }
+        }
+        found
+    }
+
+    /// The material called `name` in the mesh; a body of one material has no names there.
+    pub fn named(&self, name: Option<&str>) -> &Material {
+        let all = self.all();
+        all.iter().find(|material| Some(&*material.name) == name).unwrap_or(&all[0])
+    }
+
+    /// Whether it may differ from place to place.
+    pub fn is_by_group(&self) -> bool {
+        matches!(self, Self::Materials(_))
+    }
+
+    /// Names by group as the mesher reads them, one for each of [`Self::all`]; null for one material.
+    fn names(&self) -> Value {
+        let all = self.all();
+        let name = |own: &Material| json!(all.iter().find(|other| is_same(other, own)).map(|m| &m.name));
+        match self {
+            Self::Material(_) => Value::Null,
+            Self::Materials(groups) => groups.iter().map(|(group, m)| (group.clone(), name(m))).collect(),
+        }
+    }
+}
+
+/// Whether two materials differ in their names alone.
+fn is_same(a: &Material, b: &Material) -> bool {
+    *a == Material { name: a.name.clone(), ..b.clone() }
+}
+
 /// An elastic body whose shape is in a file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Body {
@@ -39,8 +104,9 @@ pub struct Body {
     pub content: String,
     /// Size in m of the file's unit of length; `None` = the file knows its own, or m.
     pub unit: Option<f64>,
-    /// Material.
-    pub material: Material,
+    /// Its material, or its materials by group.
+    #[serde(flatten)]
+    pub materials: BodyMaterials,
     /// What does not move; nothing = the body is free.
     pub fixed: Vec<BodyPlace>,
     /// Size of elements away from the contacts in m, of CAD; `None` = by the thickness of walls.
@@ -49,11 +115,23 @@ pub struct Body {
     pub damping_ratio: f64,
     /// Where outer and inner body strike; `None` for an inner body that is not there.
     pub at: [Option<BodyPlace>; 2],
+    /// The mesher makes this circular plate itself, and there is no file.
+    #[serde(skip)]
+    pub disc: Option<Disc>,
+}
+
+/// A circular plate about the z axis, from z = 0 to its thickness.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Disc {
+    /// In m.
+    pub radius: f64,
+    /// In m.
+    pub thickness: f64,
 }
 
 impl Body {
     /// The body that the checked table `body` describes, struck at the places `at`.
-    pub(super) fn read(body: &Node, material: Material, at: [Option<BodyPlace>; 2]) -> Result<Self> {
+    pub(super) fn read(body: &Node, materials: &Node, at: [Option<BodyPlace>; 2]) -> Result<Self> {
         let unit = match body.0.get("unit") {
             Some(Checked::Text(unit)) => {
                 Some(UNITS.iter().find(|(name, _)| name == unit).map_or(1.0, |u| u.1))
@@ -66,30 +144,52 @@ impl Body {
             file: body.text("file")?.into(),
             content: body.text(CONTENT)?.to_owned(),
             unit,
-            material,
+            materials: BodyMaterials::read(body, materials)?,
             fixed: fixed.into_iter().flatten().collect(),
             element_size: body.optional_number("element_size")?,
             damping_ratio: body.number_or("damping_ratio", 0.0)?,
             at,
+            disc: None,
         })
+    }
+
+    /// The circular `plate`, struck from above at `offset` m from its axis and from below at its centre.
+    pub(super) fn of_plate(plate: &Plate, offset: f64) -> Self {
+        let Plate { radius, thickness, edge, ref material, damping_ratio } = *plate;
+        let rim = BodyPlace::Point([radius, 0.0, 0.5 * thickness]);
+        Self {
+            file: PathBuf::new(),
+            content: String::new(),
+            unit: Some(1.0),
+            materials: BodyMaterials::Material(material.clone()),
+            fixed: if edge == Edge::Free { Vec::new() } else { vec![rim] },
+            element_size: None,
+            damping_ratio,
+            at: [[offset, 0.0, thickness], [0.0; 3]].map(|at| Some(BodyPlace::Point(at))),
+            disc: Some(Disc { radius, thickness }),
+        }
     }
 
     /// What its mesh depends on, with elements `factor` times as large as by default.
     pub fn mesh_request(&self, factor: f64) -> MeshRequest {
         let contact = |at: &Option<BodyPlace>| at.as_ref().map(|at| json!({ "at": at }));
-        let document = json!({
+        let mut document = json!({
             "kind": super::NAME,
             "body": {
-                "unit": self.unit, "fixed": self.fixed, "element_size": self.element_size, "materials": null,
+                "unit": self.unit, "fixed": self.fixed, "element_size": self.element_size,
+                "materials": self.materials.names(),
             },
             "outer": contact(&self.at[0]),
             "inner": contact(&self.at[1]),
         });
+        if let Some(disc) = self.disc {
+            document["body"]["disc"] = json!(disc);
+        }
         let key = json!({ "document": document, "content": self.content, "factor": factor, "revision": MESH_REVISION });
         let key = sha256_hex(canonical(&key).as_bytes());
-        let mut document = document;
         document["body"]["path"] = json!(self.file);
-        MeshRequest { document, factor, key, file: (self.file.clone(), self.content.clone()) }
+        let file = self.disc.is_none().then(|| (self.file.clone(), self.content.clone()));
+        MeshRequest { document, factor, key, file }
     }
 }
 
@@ -106,14 +206,32 @@ pub struct MeshRequest {
     pub factor: f64,
     /// SHA-256 of all that the mesh depends on.
     pub key: String,
-    /// The file, and the SHA-256 of its content when the scene was read.
-    pub file: (PathBuf, String),
+    /// The file, if there is one, and the SHA-256 of its content when the scene was read.
+    pub file: Option<(PathBuf, String)>,
 }
 
 /// Makes a mesh, or finds the one that is there: a `.vtu` file with its description in the `.json` file of the same name.
 pub type Mesher = fn(&MeshRequest) -> Result<PathBuf>;
 
 static MESHER: OnceLock<Mesher> = OnceLock::new();
+
+/// Announces that a body of so many unknowns is set up now, or refuses it for want of memory.
+pub type Announcer = Box<dyn Fn(usize) -> Result<()> + Send + Sync>;
+
+static ANNOUNCER: OnceLock<Announcer> = OnceLock::new();
+
+/// Says who announces set-ups of bodies; without, nobody does. The first call counts.
+pub fn set_announcer(announcer: Announcer) {
+    let _ = ANNOUNCER.set(announcer);
+}
+
+/// Announces a set-up.
+///
+/// # Errors
+/// Those of the announcer.
+pub(super) fn announce(unknowns: usize) -> Result<()> {
+    ANNOUNCER.get().map_or(Ok(()), |announcer| announcer(unknowns))
+}
 
 /// Says how meshes of bodies are made: this crate reads them only. The first call counts.
 pub fn set_mesher(mesher: Mesher) {

@@ -1,19 +1,20 @@
 //! The struck body's reduced form, from its mesh and from a coarser one that shows what the mesh changes.
 
-use super::body::{Body, mesh};
+use super::body::{Body, announce, mesh};
 use crate::body::ModalBody;
 use crate::body::cache::Cache;
 use crate::body::memo::MemoList;
-use crate::body::solid::{self, BodyMesh, BodyView, ContactInfo, StruckPoint, StruckSolid};
+use crate::body::solid::{self, BodyMesh, BodyView, CellMaterials, ContactInfo, StruckPoint, StruckSolid};
 use crate::contact::{EffectiveSphere, effective_sphere};
 use crate::error::{Error, Result};
+use crate::material::Material;
 use crate::scene::hash::sha256_hex;
 use serde_json::json;
 use std::path::Path;
 use std::sync::LazyLock;
 
 /// Number of the method that reduces bodies, part of every key: raise it when one comes out otherwise.
-const REVISION: u32 = 1;
+const REVISION: u32 = 2;
 /// Elements of the coarser mesh over those of the mesh itself.
 const COARSER: f64 = 2.0;
 /// Endings of files that know their unit.
@@ -40,14 +41,15 @@ pub(super) struct ElasticBody {
     pub(super) warnings: Vec<String>,
 }
 
-/// What a reduced body depends on: the key of its mesh, and Poisson's ratio; Young's modulus and density scale it.
-type ReducedKey = (String, f64);
+/// What a reduced body depends on: the key of its mesh, and its materials without a common factor on Young's moduli and densities, which
+/// scales it.
+type ReducedKey = (String, Vec<[f64; 3]>);
 
 /// Bodies that this process has reduced: a sweep over speeds, masses and moduli needs one.
 static REDUCED: LazyLock<MemoList<(ReducedKey, ElasticBody)>> = LazyLock::new(MemoList::default);
 
 fn reduced_key(body: &Body) -> ReducedKey {
-    (body.mesh_request(1.0).key, body.material.poisson_ratio)
+    (body.mesh_request(1.0).key, ratios(body))
 }
 
 impl ElasticBody {
@@ -74,7 +76,10 @@ impl ElasticBody {
         let mut warnings = Vec::new();
         let is_cad = body.file.extension().is_some_and(|e| CAD.iter().any(|cad| e.eq_ignore_ascii_case(cad)));
         if body.unit.is_none() && !is_cad {
-            warnings.push("`body.unit` is not stated: the numbers of the mesh file are taken as m".into());
+            let [x, y, z] = BodyMesh::lengths(&path)?;
+            warnings.push(format!(
+                "`body.unit` is not stated: the numbers of the mesh file are taken as m, so that the body measures {x:.4} x {y:.4} x {z:.4} m"
+            ));
         }
         let coarse = mesh(&body.mesh_request(COARSER))
             .and_then(|path| reduced(body, &path, &BodyMesh::contacts(&path)?))
@@ -126,6 +131,12 @@ impl ElasticBody {
         })
     }
 
+    /// The materials of `body` at outer and inner contact; of a contact that is not there the first.
+    pub(super) fn faces<'a>(&self, body: &'a Body) -> [&'a Material; 2] {
+        let name = |k: usize| self.contacts.get(k).and_then(|contact| contact.material.as_deref());
+        [0, 1].map(|k| body.materials.named(name(k)))
+    }
+
     /// A sentence for each contact with a tip of the radius `tips` in m that is an ellipse.
     ///
     /// # Errors
@@ -147,7 +158,8 @@ impl ElasticBody {
 
     /// The body's modes and residual flexibility for contact patches of the radii `patch` in m; and the same of the coarser mesh.
     pub(super) fn modal(&self, body: &Body, patch: [f64; 2]) -> (ModalBody, Option<ModalBody>) {
-        let of = |solid: &StruckSolid| solid.modal_body(&body.material, patch, body.damping_ratio);
+        let (reference, faces) = (body.materials.named(None), self.faces(body));
+        let of = |solid: &StruckSolid| solid.modal_body(reference, faces, patch, body.damping_ratio);
         (of(&self.fine), self.coarse.as_ref().map(of))
     }
 
@@ -159,6 +171,13 @@ impl ElasticBody {
                 found.push(format!(
                     "{name} contact: an edge of the face is {:.3} mm away, less than {FROM_EDGE} radii of the contact ({:.3} mm): Hertz's law assumes a face without edges",
                     1e3 * contact.edge_distance,
+                    1e3 * patch
+                ));
+            }
+            if contact.material_distance < FROM_EDGE * patch {
+                found.push(format!(
+                    "{name} contact: another material is {:.3} mm away, less than {FROM_EDGE} radii of the contact ({:.3} mm): Hertz's law assumes one material",
+                    1e3 * contact.material_distance,
                     1e3 * patch
                 ));
             }
@@ -180,10 +199,10 @@ impl ElasticBody {
 /// As [`ElasticBody::new`].
 pub(super) fn frequencies(body: &Body, count: usize) -> Result<Vec<f64>> {
     let path = mesh(&body.mesh_request(1.0))?;
-    let of = json!({ "frequencies": count, "material": body.material });
+    let of = json!({ "frequencies": count, "body": body.materials });
     cached(&path, of, || {
-        let BodyMesh { mesh, fixed } = BodyMesh::read(&path)?;
-        solid::frequencies(&mesh, &body.material, &fixed, count)
+        let (BodyMesh { mesh, fixed, .. }, materials) = read(body, &path)?;
+        solid::frequencies(&mesh, &materials, &fixed, count)
     })
 }
 
@@ -195,10 +214,10 @@ pub(super) fn view(body: &Body) -> Result<(BodyView, Vec<ContactInfo>)> {
     let path = mesh(&body.mesh_request(1.0))?;
     let contacts = BodyMesh::contacts(&path)?;
     let points: Vec<_> = contacts.iter().map(ContactInfo::struck).collect();
-    let of = json!({ "view": body.material, "points": places(&points) });
+    let of = json!({ "view": body.materials, "points": places(&points) });
     let view = cached(&path, of, || {
-        let BodyMesh { mesh, fixed } = BodyMesh::read(&path)?;
-        BodyView::new(&mesh, &body.material, &fixed, &points)
+        let (BodyMesh { mesh, fixed, .. }, materials) = read(body, &path)?;
+        BodyView::new(&mesh, &materials, &fixed, &points)
     })?;
     Ok((view, contacts))
 }
@@ -206,11 +225,33 @@ pub(super) fn view(body: &Body) -> Result<(BodyView, Vec<ContactInfo>)> {
 /// The body on the mesh at `path`, from the cache or computed.
 fn reduced(body: &Body, path: &Path, contacts: &[ContactInfo]) -> Result<StruckSolid> {
     let points: Vec<_> = contacts.iter().map(ContactInfo::struck).collect();
-    let of = json!({ "struck": places(&points), "poisson_ratio": body.material.poisson_ratio });
+    let of = json!({ "struck": places(&points), "materials": ratios(body) });
     cached(path, of, || {
-        let BodyMesh { mesh, fixed } = BodyMesh::read(path)?;
-        StruckSolid::new(&mesh, body.material.poisson_ratio, &fixed, &points)
+        let (BodyMesh { mesh, fixed, .. }, materials) = read(body, path)?;
+        announce(3 * fixed.iter().filter(|fixed| !**fixed).count())?;
+        StruckSolid::new(&mesh, &materials, &fixed, &points)
     })
+}
+
+/// The mesh at `path`, and the materials of `body` by its cells.
+fn read(body: &Body, path: &Path) -> Result<(BodyMesh, CellMaterials)> {
+    let mesh = BodyMesh::read(path)?;
+    let materials = body.materials.all();
+    let number = |name: &String| materials.iter().position(|material| material.name == *name).unwrap_or(0);
+    let numbers: Vec<usize> = mesh.materials.iter().map(number).collect();
+    let of_cell = match &numbers[..] {
+        [] => Vec::new(),
+        numbers => mesh.material_of_cell.iter().map(|own| numbers[*own]).collect(),
+    };
+    Ok((mesh, CellMaterials { materials: materials.into_iter().cloned().collect(), of_cell }))
+}
+
+/// Young's modulus and density of each material over those of the first, and Poisson's ratio.
+fn ratios(body: &Body) -> Vec<[f64; 3]> {
+    let first = body.materials.named(None);
+    let of =
+        |m: &Material| [m.youngs_modulus / first.youngs_modulus, m.density / first.density, m.poisson_ratio];
+    body.materials.all().into_iter().map(of).collect()
 }
 
 fn places(points: &[StruckPoint]) -> Vec<serde_json::Value> {

@@ -10,7 +10,10 @@ mod results;
 mod scene;
 mod soundness;
 
-pub use body::{Body, BodyPlace, MeshRequest, Mesher, content, set_mesher};
+pub(super) use between::off_centre_plate;
+pub use body::{
+    Announcer, Body, BodyMaterials, BodyPlace, Disc, MeshRequest, Mesher, content, set_announcer, set_mesher,
+};
 pub use model::{Neighbours, OF_COARSER, difference_from_hertz, neighbours};
 pub use results::{CURVES, ImpactQuantities};
 pub use scene::{GeneralImpact, Struck, Wall};
@@ -22,7 +25,7 @@ use crate::error::{Error, Result};
 use crate::material::Material;
 use crate::result::limit::{self, QUASI_STATIC, SMALL_ROTATION};
 use crate::result::{Curve, History, Limit, Outcome, Quantity, Statement, Summary, Table};
-use crate::scene::{Model, Scene, Shape};
+use crate::scene::{Inner, Model, Scene, Shape};
 use elastic::ElasticBody;
 use model::ContactModel;
 
@@ -97,19 +100,23 @@ pub fn body_view(scene: &Scene) -> Result<Option<(BodyView, Vec<ContactInfo>)>> 
 /// The elastic contacts: whose, their laws, with the area of an ellipse where there is one, and the materials that meet.
 fn contact_laws(setup: &GeneralImpact) -> Vec<(&'static str, Hertz, Vec<&Material>)> {
     let elastic = setup.body().and_then(ElasticBody::known);
+    let face = setup.face();
+    let faces = setup
+        .body()
+        .map(|body| elastic.as_ref().map_or([body.materials.named(None); 2], |elastic| elastic.faces(body)));
     let law = |k: usize, tip: f64, material: &Material| {
         let sphere = elastic.as_ref().and_then(|body| body.sphere(k, tip).ok());
         let sphere = sphere.unwrap_or(EffectiveSphere { radius: tip, area: 1.0 });
-        let law = Hertz::new(sphere.radius, material, &setup.face());
+        let law = Hertz::new(sphere.radius, material, faces.map_or(&*face, |faces| faces[k]));
         Hertz { tip_radius: law.tip_radius / sphere.area, ..law }
     };
     let curvature = setup.struck_inner().map_or(0.0, |inner| 1.0 / inner.shape.tip_radius());
     let outer = 1.0 / (1.0 / setup.outer.shape.tip_radius() + curvature);
     let mut found = vec![("outer", law(0, outer, &setup.outer.material), setup.materials())];
-    if let (Some(inner), Some(body)) = (&setup.inner, setup.body()) {
-        let own = law(1, inner.shape.tip_radius(), &inner.material);
-        found.push(("inner", own, vec![&inner.material, &body.material]));
-        found[0].2 = vec![&setup.outer.material, &body.material];
+    if let Some(faces) = faces {
+        found[0].2 = vec![&setup.outer.material, faces[0]];
+        let own = |inner: &Inner| law(1, inner.shape.tip_radius(), &inner.material);
+        found.extend(setup.inner.iter().map(|inner| ("inner", own(inner), vec![&inner.material, faces[1]])));
     }
     found
 }

@@ -15,6 +15,7 @@ use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, inte
 use crate::error::{Error, Result};
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
 use crate::kinds::{Kind as _, SeriesModel};
+use crate::material::Material;
 use crate::result::{
     BenderSummary, CUT, ElasticLimit, History, Outcome, Point, StackSummary, Summary, Table,
 };
@@ -43,6 +44,8 @@ pub(super) struct ContactModel {
     frame: f64,
     memory: Option<Memory>,
     between: Option<Between>,
+    /// Materials of what the outer and the inner body touch.
+    faces: [Material; 2],
 }
 
 impl ContactModel {
@@ -56,11 +59,13 @@ impl ContactModel {
         let frame = if setup.outer.shape.is_mounted() { 0.0 } else { setup.struck_velocity() };
         let outer = MovingBody::outer(&Outer { speed: setup.outer.speed + frame, ..setup.outer.clone() })?;
         let face = setup.face();
+        let mut faces = [&*face; 2].map(Material::clone);
         let mut between = None;
         let system = match (&setup.struck, &setup.inner) {
             (Some(Struck::Wall(_)), _) => System::on_wall(outer, &face),
             (Some(Struck::Body(body)), inner) => {
                 let elastic = ElasticBody::new(body)?;
+                faces = elastic.faces(body).map(Material::clone);
                 let (system, found) = Between::joined(elastic, body, outer, &setup.outer, inner.as_ref())?;
                 between = Some(found);
                 with_modes(system, modes)?
@@ -80,7 +85,8 @@ impl ContactModel {
         let memory =
             Memory::new([&setup.outer.material, &face, inner], setup.plate().map(Bending::new), &system)?;
         let normal_share = given.outer.angle.cos().powi(2);
-        Ok(Self { scene: scene.clone(), normal_share, system, frame, memory, between, setup: setup.clone() })
+        let (scene, setup) = (scene.clone(), setup.clone());
+        Ok(Self { scene, normal_share, system, frame, memory, between, faces, setup })
     }
 
     /// The results of an integration; those that a scene does not have are not determined.
@@ -158,14 +164,14 @@ impl ContactModel {
 
     /// `None` without yield strengths, and where a body relaxes or is clamped.
     fn elastic_limit(&self, options: &Options) -> Option<ElasticLimit> {
-        let face = self.setup.face();
         let relaxes = self.setup.materials().iter().any(|material| !material.relaxation.is_empty());
         if self.setup.outer.shape.is_mounted() || relaxes {
             return None;
         }
-        let inner = self.setup.inner.as_ref().map_or(&*face, |inner| &inner.material);
-        let materials = [&self.setup.outer.material, &*face, inner];
-        let onset = OnsetOfYield::new(materials, self.setup.plate().map(Bending::new), &self.system)?;
+        let faces = &self.faces;
+        let inner = self.setup.inner.as_ref().map_or(&faces[1], |inner| &inner.material);
+        let pairs = [[&self.setup.outer.material, &faces[0]], [inner, &faces[1]]];
+        let onset = OnsetOfYield::new(pairs, self.setup.plate().map(Bending::new), &self.system)?;
         let [closing, _] = self.with_impacts(|all| all.elastic_speeds(&onset, options));
         let outer = closing.map(|speed| speed - self.frame).filter(|speed| *speed > 0.0);
         Some(ElasticLimit { outer, inner: None })
@@ -252,7 +258,7 @@ impl ContactModel {
         }
         warnings.extend(uncountable(result, tolerance));
         warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
-        let face_yields = self.setup.face().plasticity().is_some();
+        let face_yields = self.faces[0].plasticity().is_some();
         warnings.extend((face_yields && self.setup.struck_inner().is_some()).then(|| {
             "the law of plastic contacts takes the inner body's tip as flat and the outer one's as more curved instead".into()
         }));

@@ -9,7 +9,9 @@ use crate::kinds::body_reading;
 use crate::kinds::plate_impact::{PLATE, read_plate};
 use crate::material::Material;
 use crate::scene::collision::Collision;
-use crate::scene::grammar::{BODY_MATERIAL, Bound, Field, Kind, choice, optional, positive, pure, required};
+use crate::scene::grammar::{
+    BODY_MATERIAL, Bound, Field, Kind, choice, one_way, optional, positive, pure, required,
+};
 use crate::scene::material::material;
 use crate::scene::quantity::Dimension;
 use crate::scene::values::{Node, Values};
@@ -89,11 +91,11 @@ impl GeneralImpact {
         self.inner.as_ref().filter(|_| self.struck.is_none())
     }
 
-    /// Material of what is struck; of a rigid wall one that does not deform.
+    /// Material of what is struck, of a body of several the first; of a rigid wall one that does not deform.
     pub fn face(&self) -> Cow<'_, Material> {
         let material = match &self.struck {
             Some(Struck::Wall(wall)) => wall.material.as_ref(),
-            Some(Struck::Body(body)) => Some(&body.material),
+            Some(Struck::Body(body)) => Some(body.materials.named(None)),
             Some(Struck::Plate(plate)) => Some(&plate.material),
             None => self.inner.as_ref().map(|inner| &inner.material),
         };
@@ -103,13 +105,13 @@ impl GeneralImpact {
     /// Materials of all bodies; a rigid wall has none.
     pub fn materials(&self) -> Vec<&Material> {
         let between = match &self.struck {
-            Some(Struck::Wall(wall)) => wall.material.as_ref(),
-            Some(Struck::Body(body)) => Some(&body.material),
-            Some(Struck::Plate(plate)) => Some(&plate.material),
-            None => None,
+            Some(Struck::Wall(wall)) => wall.material.iter().collect(),
+            Some(Struck::Body(body)) => body.materials.all(),
+            Some(Struck::Plate(plate)) => vec![&plate.material],
+            None => Vec::new(),
         };
-        let inner = self.inner.as_ref().map(|inner| &inner.material);
-        [Some(&self.outer.material), between, inner].into_iter().flatten().collect()
+        let inner = self.inner.iter().map(|inner| &inner.material);
+        [&self.outer.material].into_iter().chain(between).chain(inner).collect()
     }
 
     /// Mass of the inner body in kg; `None` without one.
@@ -164,7 +166,10 @@ static WALL: [Field; 2] = [
 const MOST_FIXED: usize = 64;
 const MOST_FREQUENCIES: u64 = 200;
 
-static BODY: [Field; 6] = [
+/// What two keys state of a body.
+const MATERIAL: &str = "the material";
+
+static BODY: [Field; 7] = [
     required(
         "file",
         Kind::Text,
@@ -175,7 +180,17 @@ static BODY: [Field; 6] = [
         Kind::Choice(&[choice("m"), choice("mm"), choice("um"), choice("cm"), choice("in")]),
         "Unit of length in the file; absent = STEP's own, else m",
     ),
-    BODY_MATERIAL,
+    one_way(None, MATERIAL, "one", BODY_MATERIAL),
+    one_way(
+        None,
+        MATERIAL,
+        "groups",
+        required(
+            "materials",
+            Kind::Materials,
+            "Materials by the names of groups of elements in the file, which have all elements",
+        ),
+    ),
     optional(
         "fixed",
         Kind::Places(MOST_FIXED),
@@ -279,7 +294,7 @@ impl Language for super::Kind {
             (None, Some(body)) => {
                 let inner = inner_table.as_ref().map(|inner| place(inner, "at")).transpose()?;
                 let at = [place(&outer_table, "at")?, inner.flatten()];
-                Some(Struck::Body(Body::read(&body, material(materials, body.text("material")?)?, at)?))
+                Some(Struck::Body(Body::read(&body, materials, at)?))
             }
             (None, None) => {
                 plate?.map(|plate| read_plate(&plate, materials).map(Struck::Plate)).transpose()?

@@ -145,10 +145,18 @@ impl Bodies for GeneralImpact {
                 help: "remove [series], or use another outer body",
             },
             Rule {
-                fields: vec!["body.material"],
-                holds: self.body().is_none_or(|body| body.material.relaxation.is_empty()),
-                message: "`body.material` is viscoelastic, which is not supported for a body from a mesh".into(),
+                fields: vec!["body.material", "body.materials"],
+                holds: self.body().is_none_or(|body| body.materials.all().iter().all(|m| m.relaxation.is_empty())),
+                message: "the material of [body] is viscoelastic, which is not supported for a body from a mesh".into(),
                 help: "remove `relaxation` and `loss_factor` of the material, or use `damping_ratio`",
+            },
+            Rule {
+                fields: vec!["body.materials"],
+                holds: is_elastic || self.body().is_none_or(|body| !body.materials.is_by_group()),
+                message:
+                    "`body.materials`: contacts with a body of several materials are elastic, but a material of the scene has `hardening`, `relaxation` or `loss_factor`"
+                        .into(),
+                help: "remove `hardening`, `relaxation` and `loss_factor`, or use `body.material`",
             },
             Rule {
                 fields: vec!["outer.material"],

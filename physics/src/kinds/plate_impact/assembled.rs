@@ -14,6 +14,7 @@ use crate::dynamics::system::{PLATE, System};
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::fluid::added_mass::{immersed, mass_factor};
+use crate::kinds::general_impact::off_centre_plate;
 use crate::scene::DEFAULT_MODES;
 use crate::scene::{Edge, Material, Model, Shape};
 
@@ -96,6 +97,28 @@ pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize) -> Result<Sys
     // the plate is observed at its centre, not at the mean of both contacts
     system.centre[PLATE..].copy_from_slice(&centre);
     Ok(system)
+}
+
+/// Model C with `modes` modes, or all there are, of a plate that is struck beside its centre: as a body from a mesh; and the same on a coarser
+/// mesh.
+///
+/// # Errors
+/// As [`off_centre_plate`], [`Error::Usage`] for more modes than there are.
+pub(super) fn off_centre_continuum(
+    setup: &PlateImpact,
+    modes: Option<usize>,
+) -> Result<(Assembled, Option<System>)> {
+    let (system, coarse, warnings) = off_centre_plate(&setup.plate, &setup.outer, &setup.inner)?;
+    let modes = modes.unwrap_or(system.modes);
+    if modes > system.modes {
+        return Err(Error::Usage(format!(
+            "--modes {modes}: model C of an off-centre impact has {} modes at most",
+            system.modes
+        )));
+    }
+    let system = system.lowest(modes);
+    let coarse = coarse.map(|coarse| coarse.lowest(modes));
+    Ok((Assembled { system, omega_next: f64::INFINITY, fluid: None, warnings }, coarse))
 }
 
 /// Models A and B with `modes` elastic modes.

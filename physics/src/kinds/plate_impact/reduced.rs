@@ -2,7 +2,9 @@
 
 mod run;
 
-use super::assembled::{Assembled, RequestedModes, continuum, kirchhoff, kirchhoff_plate};
+use super::assembled::{
+    Assembled, RequestedModes, continuum, kirchhoff, kirchhoff_plate, off_centre_continuum,
+};
 use super::choice::ChoicePlan;
 use super::closed_form;
 use super::continua::Continua;
@@ -33,6 +35,8 @@ pub struct Reduced {
     /// What its materials remember; elastic ones take the integrator that knows nothing of it.
     memory: Option<Memory>,
     warnings: Vec<String>,
+    /// The same on a coarser mesh, of a plate that is meshed.
+    coarse: Option<System>,
     /// Why it is this model, if it was left to the program.
     choice: Option<Choice>,
     scene: Scene,
@@ -78,6 +82,10 @@ impl Reduced {
             Model::A | Model::B => {
                 let default = if setup.outer.offset > 0.0 { OFF_CENTRE_MODES } else { DEFAULT_MODES };
                 kirchhoff(setup, modes.unwrap_or(default), &bodies.kirchhoff)?
+            }
+            Model::C if setup.outer.offset > 0.0 => {
+                let (built, coarse) = off_centre_continuum(setup, modes)?;
+                return Ok(Self { coarse, ..Self::of(built, model, scene, None)? });
             }
             Model::C => {
                 let predictor = bodies.predictor(setup)?;
@@ -157,15 +165,24 @@ impl Reduced {
         if let Some(memory) = &memory {
             system.first_frequency = memory.frequency(system.first_frequency);
         }
-        Ok(Self { model, system, omega_next, fluid, memory, warnings, choice, scene })
+        Ok(Self { model, system, omega_next, fluid, memory, warnings, coarse: None, choice, scene })
     }
 
-    /// Refuses a `model` that has no form for impacts like that of `scene`, before anything is built.
+    /// Refuses a `model` that has no form for impacts like that of `scene`, or one that has to be requested alone because it makes a mesh,
+    /// before anything is built.
     ///
     /// # Errors
     /// [`Error::Solver`] with the reason, [`Error::Scene`] if the scene is no plate impact.
     pub fn require(scene: &Scene, model: Model) -> Result<()> {
-        require_covered(scene.plate_impact()?, Some(model))
+        let setup = scene.plate_impact()?;
+        require_covered(setup, Some(model))?;
+        match model == Model::C && setup.outer.offset > 0.0 {
+            true => Err(Error::Solver(format!(
+                "`outer.offset` is {} m: model C makes a mesh of the plate, which needs gmsh; request it alone",
+                setup.outer.offset
+            ))),
+            false => Ok(()),
+        }
     }
 
     /// The model.
@@ -186,12 +203,18 @@ impl Reduced {
 
 /// Refuses what `model`, or the one that is to be chosen, does not have.
 fn require_covered(setup: &PlateImpact, model: Option<Model>) -> Result<()> {
-    let Outer { offset, .. } = setup.outer;
-    if offset == 0.0 || (model.is_some_and(|model| model < Model::C) && setup.plate.edge != Edge::Free) {
+    let (Outer { offset, .. }, edge) = (&setup.outer, setup.plate.edge);
+    let covers = match model {
+        None => false,
+        // supports that leave motions in the plane are not those of a body from a mesh
+        Some(Model::C) => edge != Edge::SimplySupported,
+        Some(Model::A | Model::B) => edge != Edge::Free,
+    };
+    if *offset == 0.0 || covers {
         return Ok(());
     }
     Err(Error::Solver(format!(
-        "`outer.offset` is {offset} m: off-centre impacts need model A or B and a clamped or simply supported plate; the reference takes all"
+        "`outer.offset` is {offset} m: off-centre impacts need model A or B with a clamped or simply supported plate, or model C with a clamped or free one; the reference takes all"
     )))
 }
 

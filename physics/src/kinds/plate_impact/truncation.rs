@@ -53,6 +53,13 @@ pub(super) fn estimate(
     omega_next: f64,
     end_time: Option<f64>,
 ) -> Result<Truncation> {
+    if setup.outer.offset > 0.0 && model == Model::C {
+        let options = Options { tolerance: INTEGRATION, end_time, ..Options::default() };
+        // its upper Ritz modes stand for what lies above them
+        let truncation = by_fewer_modes(system, &options, [6], |_| 1.0);
+        let warning = (truncation.error > LARGEST).then(|| warning(model, system.modes, truncation, None));
+        return Ok(Truncation { error: truncation.error, warning });
+    }
     if setup.outer.offset > 0.0 {
         return off_centre(setup, model, system, end_time);
     }

@@ -71,7 +71,8 @@ pub(super) fn measures(scene: &GeneralImpact) -> Vec<(String, String)> {
         }
         Struck::Body(body) => {
             let held = if body.fixed.is_empty() { ", free" } else { "" };
-            ("body".to_owned(), format!("{}, {}{held}", name_of(struck), material(Some(&body.material))))
+            let names: Vec<&str> = body.materials.all().iter().map(|material| &*material.name).collect();
+            ("body".to_owned(), format!("{}, {}{held}", name_of(struck), names.join(" and ")))
         }
     });
     let inner = scene.inner.as_ref().map(|inner| {

@@ -5,12 +5,15 @@ use crate::dynamics::StopReason;
 use crate::dynamics::balance_check;
 use crate::dynamics::error_control;
 use crate::dynamics::integration::{Converged, Integration, NEGLIGIBLE, Options, SAMPLES_BETWEEN};
+use crate::dynamics::integrator::integrate;
 use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
+use crate::kinds::general_impact::OF_COARSER;
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
 use crate::kinds::plate_impact::Kind;
 use crate::kinds::plate_impact::results::{PlateQuantities, quantities, values};
+use crate::kinds::plate_impact::trials::TruncationError;
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
 use crate::kinds::{Kind as _, SeriesModel};
@@ -22,6 +25,9 @@ use std::time::Instant;
 const JUDGED_SAMPLES: usize = 1 << 12;
 /// Error of a point's force peaks from looking for them, in tolerances: below what they are wrong by.
 const PEAK_ERROR: f64 = 0.1;
+/// Error of the time integration in runs that compare meshes, and error by the mesh from which on there is a warning.
+const MESH_TOLERANCE: f64 = 1e-6;
+const LARGEST_MESH_ERROR: f64 = 0.01;
 /// Share of a bender's moment at the strike from which on there is a warning.
 const MOMENT_LEFT: f64 = 0.01;
 
@@ -90,9 +96,14 @@ impl Reduced {
             let [outer, inner] = self.impacts().elastic_speeds(&onset, options);
             ElasticLimit { outer, inner }
         };
-        Ok(OnsetOfYield::new(materials, Some(Bending::new(&setup.plate)), &self.system)
-            .filter(|_| covered)
-            .map(limit))
+        let [outer, plate, inner] = materials;
+        Ok(OnsetOfYield::new(
+            [[outer, plate], [inner, plate]],
+            Some(Bending::new(&setup.plate)),
+            &self.system,
+        )
+        .filter(|_| covered)
+        .map(limit))
     }
 
     /// Contacts of an elastic model whose pressure alone would not yield, but does with the bending of the plate.
@@ -208,6 +219,14 @@ impl Reduced {
         PlateQuantities { efficiency: quantities.efficiency * angle.cos().powi(2), ..quantities }
     }
 
+    /// Relative error by the mesh of the plate, from what a coarser one changes.
+    fn mesh_error(&self) -> Option<f64> {
+        let options = Options { tolerance: MESH_TOLERANCE, ..self.options(MESH_TOLERANCE) };
+        let run = |system: &System| quantities(system, &integrate(system, &options).ok()?).ok();
+        let (coarse, own) = (run(self.coarse.as_ref()?)?, run(&self.system)?);
+        Some(OF_COARSER * TruncationError::between(&coarse, &own, self.system.speed).error)
+    }
+
     fn options(&self, tolerance: f64) -> Options {
         Options { tolerance, end_time: self.scene.run.end_time, ..Options::default() }
     }
@@ -217,10 +236,14 @@ impl Reduced {
         let setup = &*self.scene.plate_impact()?.along_normal();
         let end_time = self.scene.run.end_time;
         let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
+        let mesh_error = self.mesh_error();
         let even_steps = result.least_tolerance > 0.0;
         let mut warnings = scene::doubts(&self.scene);
         warnings.extend(self.warnings.iter().cloned());
         warnings.extend(truncation.warning);
+        warnings.extend(mesh_error.filter(|error| *error > LARGEST_MESH_ERROR).map(|error| {
+            format!("the plate's mesh changes forces or efficiency by about {:.1} %", 100.0 * error)
+        }));
         if setup.friction > 0.0 {
             warnings.push("friction is omitted by the reduced models; the reference includes it".into());
         }
@@ -283,6 +306,7 @@ impl Reduced {
             steps: Some(result.steps),
             solve_seconds,
             integration_error: result.error_estimate,
+            mesh_error,
             truncation_error: Some(truncation.error),
             bender: system.drive.map(|drive| {
                 let transmitted = 0.5 * system.masses[1] * result.velocity[1].powi(2);
