@@ -26,11 +26,11 @@ LARGEST = 0.25
 """Largest element of a sphere over its radius."""
 SLOPE = 0.3
 """Growth of the element size per distance from the contact, at factor 1."""
-WALLS = 0.35
+WALLS = 0.3
 """Largest element over the thickness of a wall, at factor 1."""
 PER_WAVE = {1: 24.0, 2: 8.0}
 """Elements per shortest wavelength, by order."""
-PER_CIRCLE = 36.0
+PER_CIRCLE = 45.0
 """Elements around a circle, at factor 1."""
 WAVE_FREQUENCY = 3.0
 """Highest frequency resolved, times the Hertz duration: its pulse has less than 1 % beyond."""

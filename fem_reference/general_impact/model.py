@@ -115,7 +115,8 @@ def impact_model(scene: Scene, sizes: Sizes, file: Path | None) -> ImpactModel:
         contacts.append(
             SurfaceContact(
                 *(name, STRUCK, patch.nodes, number),
-                *(pairs.facets, pairs.weights, pairs.normals, pairs.gaps, np.unique(facets)),
+                *(pairs.facets, pairs.weights, pairs.normals, pairs.gaps),
+                reachable=np.unique(facets),
             )
         )
         sides.append(Side(*common, number, ball, sizes.least(name), patch, places, facets, own))

@@ -80,7 +80,7 @@ def test_no_echo_of_a_wall_comes_back_during_the_contact() -> None:
 
 
 def tilted_block(path: Path) -> tuple[Path, Floats, Floats, Floats]:
-    """A block of 24 x 20 x 6 mm, turned, its upper face's middle (m) and normal, its lower one's."""
+    """A turned block, 24 x 20 x 6 mm; middle (m) and normal of its upper face, middle below."""
     axis = np.array([1.0, 2.0, 0.5]) / math.sqrt(5.25)
 
     def build() -> None:
@@ -213,7 +213,7 @@ def test_supports_on_one_line_are_refused(tmp_path: Path) -> None:
     scene = parse_scene(document(body=body))
     expected = estimate(scene)
     sizes = Sizes(scene, expected.radii, expected.duration, 1.0)
-    with pytest.raises(SceneError, match="body.fixed"):
+    with pytest.raises(SceneError, match=r"body\.fixed"):
         impact_model(scene, sizes, path)
     with pytest.raises(SceneError, match="--body does not name its file"):
         impact_model(replace(scene), sizes, None)
