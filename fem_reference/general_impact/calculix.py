@@ -35,11 +35,13 @@ from .solve import Meshed, on_fitting_mesh
 NAME = "CalculiX"
 REVISION = 1
 """Counts changes of the method that make kept results useless."""
-COARSER = 0.6
+COARSER = 0.5
 """Elements in every direction for one that is requested: every step factorises a matrix."""
-AT_CONTACTS = 1.5
-"""More elements at the contacts than elsewhere: below one in a contact radius the contact is much
-too stiff (an element has no dent of its own)."""
+AT_CONTACTS = 1.7
+"""More elements at the contacts than elsewhere: well below one in a contact radius the contact is
+too stiff."""
+STEEPEST = 0.7
+"""Growth of the elements: with steeper growth the mesher passes over a contact."""
 STEPS = 60.0
 """Time steps in the shortest Hertz contact duration at `paper` resolution."""
 MOST_HALVED = 3
@@ -252,6 +254,6 @@ def compute(
     elements = AT_CONTACTS * scene.elements_per_contact_radius
     finer = replace(scene, elements_per_contact_radius=elements)
     found, meshed = on_fitting_mesh(
-        finer, file, COARSER * factor, settings, comm, report, method(scene), solved
+        finer, file, COARSER * factor, settings, comm, report, method(scene), solved, STEEPEST
     )
     return Solution(**vars(found), **vars(meshed))

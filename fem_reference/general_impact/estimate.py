@@ -115,6 +115,13 @@ class Sizes:
     radii: dict[str, float]
     duration: float
     factor: float
+    steepest: float = math.inf
+    """Largest growth of the elements per distance."""
+
+    @property
+    def slope(self) -> float:
+        """Growth of the elements per distance."""
+        return min(SLOPE / self.factor, self.steepest)
 
     def least(self, name: str) -> float:
         """Size at a contact, m."""
@@ -137,7 +144,7 @@ class Sizes:
             (centre,),
             FINE_ZONE * self.radii[name],
             least,
-            SLOPE / self.factor,
+            self.slope,
             max(least, largest / self.factor),
         )
 
@@ -163,7 +170,7 @@ class Sizes:
         }
         return Fineness(
             contacts,
-            SLOPE / self.factor,
+            self.slope,
             WALLS / self.factor,
             self.per_wave(material) / self.factor,
             PER_CIRCLE * self.factor,

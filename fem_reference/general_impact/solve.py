@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -127,11 +128,13 @@ def on_fitting_mesh(
     report: Report,
     method: list[Any],
     solved: Callable[[ImpactModel, Sizes, int], S],
+    steepest: float = math.inf,
 ) -> tuple[S, Meshed]:
     """Solve with ``solved``, which gets model, sizes and the number of the attempt.
 
     The first mesh of a series is made again until its contact radii are those for which it was
-    made. They are kept for this ``method``, and all other meshes are made for them.
+    made. They are kept for this ``method``, and all other meshes are made for them. Elements
+    grow by ``steepest`` per distance at most.
 
     Raises:
         SceneError, SolverError: see `compute`.
@@ -142,7 +145,7 @@ def on_fitting_mesh(
     requested = scene.elements_per_contact_radius * factor
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
-        sizes = Sizes(scene, radii, first.duration, factor)
+        sizes = Sizes(scene, radii, first.duration, factor, steepest)
         # gmsh runs in one process; the others wait
         made: ImpactModel = comm.bcast(impact_model(scene, sizes, file) if comm.rank == 0 else None)
         done = solved(made, sizes, attempt)
