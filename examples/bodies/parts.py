@@ -36,7 +36,23 @@ def block() -> None:
     occ.addBox(-10, -10, -20, 20, 20, 20)
 
 
-PARTS: dict[str, Callable[[], None]] = {part.__name__: part for part in (bracket, casing, block)}
+def beam() -> None:
+    """A beam with a rectangular section, 40 x 6 x 3 mm."""
+    occ.addBox(0, 0, 0, 40, 6, 3)
+
+
+def box() -> None:
+    """A thin-walled box, open below, 20 x 16 x 10 mm, walls of 1.5 mm."""
+    outside = occ.addBox(0, 0, 0, 20, 16, 10)
+    below = edges((-1, -1, -1), (21, 17, 1))
+    others = [edge for edge in edges((-1, -1, -1), (21, 17, 11)) if edge not in below]
+    solid = occ.fillet([outside], others, [2])[0]
+    occ.cut([solid], [(3, occ.addBox(1.5, 1.5, 0, 17, 13, 8.5))])
+
+
+PARTS: dict[str, Callable[[], None]] = {
+    part.__name__: part for part in (bracket, casing, block, beam, box)
+}
 
 
 def write(name: str, folder: Path) -> None:

@@ -6,14 +6,12 @@ in m/s and energies in mJ, and CalculiX's own small constants meet numbers of th
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 
-from ..common.arrays import Floats, Ints
+from ..common.arrays import Floats
 from ..common.bodies import Material
-from .wedge import Wedge
 
 MILLI = 1e3
 """mm per m, ms per s, mJ per J."""
@@ -23,19 +21,33 @@ FREE_MODES = 2
 """A free body's first one is its rigid motion."""
 
 
+Term = tuple[int, int, float]
+"""Node, direction (1 to 3) and coefficient in a linear equation."""
+Elements = dict[str, list[tuple[int, list[int]]]]
+"""By CalculiX's type: number and nodes of each element."""
+
+
 @dataclass(frozen=True)
 class Part:
-    """A body of revolution."""
+    """A body."""
 
     name: str
-    wedge: Wedge
+    nodes: list[tuple[int, Floats]]
+    """Number and place (3,) of every node, m."""
+    elements: Elements
     material: Material
-    clamped: Ints
-    """Nodes of the plane that cannot move along r."""
-    supported: Ints
-    """Nodes of the plane that cannot move along z."""
-    speed: float = 0.0
-    """Along z at the start, m/s."""
+    held: list[tuple[int, int]]
+    """Node and direction of displacements that are zero."""
+    equations: list[list[Term]] = field(default_factory=list)
+    """Sums of terms that are zero; the first term of each follows the others."""
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """At the start, m/s."""
+
+    @property
+    def last(self) -> tuple[int, int]:
+        """Largest numbers of its nodes and elements."""
+        elements = [number for kind in self.elements.values() for number, _ in kind]
+        return max(number for number, _ in self.nodes), max(elements)
 
 
 @dataclass(frozen=True)
@@ -49,15 +61,20 @@ class Contact:
     """Pa/m"""
 
 
+AXIAL = 3
+"""Direction of an observer's only displacement."""
+
+
 @dataclass(frozen=True)
 class Observer:
-    """A node without stiffness whose axial displacement is the weighted sum of others'."""
+    """A node without stiffness; its displacement along z is the weighted sum of others'."""
 
     name: str
     node: int
-    nodes: Ints
-    weights: Floats
-    """Their sum is 1."""
+    terms: list[Term]
+    """Nodes, directions and weights."""
+    speed: float = 0.0
+    """At the start, m/s."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +87,9 @@ class Steps:
     """s"""
     damping: float
     """Their alpha, from -1/3 to 0."""
+    changes: float | None = None
+    """Share of the contact's points of integration that may still open or close when an iteration
+    ends; None: CalculiX's own, 0.001."""
 
 
 @dataclass(frozen=True)
@@ -82,30 +102,33 @@ class Deck:
 
     def impact(self, steps: Steps) -> str:
         """The deck of an impact."""
-        speeds = [part for part in self.parts if part.speed != 0.0]
         lines = [*self._model(), "*INITIAL CONDITIONS, TYPE=VELOCITY"]
-        lines += [f"N{part.name},3,{part.speed:.15g}" for part in speeds]
-        by_name = {part.name: part for part in speeds}
+        for part in self.parts:
+            moving = [(k, v) for k, v in enumerate(part.velocity, 1) if v != 0.0]
+            lines += [f"N{part.name},{direction},{_number(speed)}" for direction, speed in moving]
+        moved = [observer for observer in self.observers if observer.speed != 0.0]
+        lines += [f"{observer.node},{AXIAL},{_number(observer.speed)}" for observer in moved]
+        lines.append("*STEP, INC=10000000")
+        if steps.changes is not None:
+            # its own values follow: random perturbation, softening, iterations
+            lines += ["*CONTROLS, PARAMETERS=CONTACT", f"{steps.changes:g},0.1,100,60"]
         lines += [
-            f"{o.node},3,{by_name[o.name].speed:.15g}" for o in self.observers if o.name in by_name
-        ]
-        lines += [
-            "*STEP, INC=10000000",
             f"*DYNAMIC, DIRECT, ALPHA={steps.damping:g}",
             f"{MILLI * steps.time_step:.12g},{MILLI * steps.end:.12g}",
         ]
         for contact in self.contacts:
             lines += [f"*CONTACT PRINT, SLAVE=S{contact.name}, MASTER=M{contact.name}", "CF"]
         for observer in self.observers:
-            lines += [f"*NODE PRINT, NSET=O{observer.name}", "U,V"]
+            lines += _printed(observer, "U,V")
         for part in self.parts:
             lines += [f"*EL PRINT, ELSET=E{part.name}, TOTALS=ONLY", "ELSE,ELKE"]
         return "\n".join([*lines, "*END STEP", ""])
 
     def modes(self, count: int) -> str:
         """The deck of the lowest eigenfrequencies."""
-        step = ["*STEP", "*FREQUENCY", f"{count}", "*END STEP", ""]
-        return "\n".join([*self._model(), *step])
+        lines = [*self._model(), "*STEP", "*FREQUENCY", f"{count}"]
+        lines += [line for observer in self.observers for line in _printed(observer, "U")]
+        return "\n".join([*lines, "*END STEP", ""])
 
     def _model(self) -> list[str]:
         lines: list[str] = []
@@ -120,6 +143,12 @@ class Deck:
         return lines
 
 
+def _number(value: float) -> str:
+    """CalculiX reads 20 characters of a number; the exponent's last digit would be lost."""
+    exact = f"{value:.15g}"
+    return exact if len(exact) <= 20 else f"{value:.12g}"
+
+
 def _rows(values: Iterable[object], per_line: int) -> list[str]:
     """Values separated by commas; a line that goes on ends with one."""
     it = iter(values)
@@ -130,30 +159,28 @@ def _rows(values: Iterable[object], per_line: int) -> list[str]:
 
 
 def _body(part: Part) -> list[str]:
-    wedge, material = part.wedge, part.material
+    material = part.material
     lines = [f"*NODE, NSET=N{part.name}"]
-    for number, (x, y, z) in wedge.nodes:
-        lines.append(f"{number},{MILLI * x:.15g},{MILLI * y:.15g},{MILLI * z:.15g}")
-    for kind, elements in wedge.elements.items():
+    for number, (x, y, z) in part.nodes:
+        lines.append(f"{number},{_number(MILLI * x)},{_number(MILLI * y)},{_number(MILLI * z)}")
+    for kind, elements in part.elements.items():
         if elements:
             lines.append(f"*ELEMENT, TYPE={kind}, ELSET=E{part.name}")
         for number, nodes in elements:
             lines += _rows([number, *nodes], 16)
     return [
         *lines,
-        f"*NSET, NSET=P{part.name}, GENERATE",
-        f"{wedge.first[0]},{wedge.first[-1]}",
         f"*MATERIAL, NAME=A{part.name}",
         "*ELASTIC",
-        f"{MEGA * material.youngs_modulus:.15g},{material.poisson_ratio:.15g}",
+        f"{_number(MEGA * material.youngs_modulus)},{_number(material.poisson_ratio)}",
         "*DENSITY",
-        f"{MEGA * material.density:.15g}",
+        f"{_number(MEGA * material.density)}",
         f"*SOLID SECTION, ELSET=E{part.name}, MATERIAL=A{part.name}",
     ]
 
 
-def _equation(terms: list[tuple[int, int, float]]) -> list[str]:
-    """Node, direction and coefficient of each term; the sum is zero, the first one follows.
+def _equation(terms: Sequence[Term]) -> list[str]:
+    """The sum of the terms is zero, the first one follows.
 
     CalculiX reads lines of 132 characters: four terms of twelve digits.
     """
@@ -162,28 +189,26 @@ def _equation(terms: list[tuple[int, int, float]]) -> list[str]:
 
 
 def _constraints(part: Part) -> list[str]:
-    wedge = part.wedge
-    lines = ["*EQUATION"]
-    for twin, leader, angle in wedge.twins:
-        cosine, sine = math.cos(angle), math.sin(angle)
-        lines += _equation([(twin, 1, 1.0), (leader, 1, -cosine)])
-        lines += _equation([(twin, 2, 1.0), (leader, 1, -sine)])
-        lines += _equation([(twin, 3, 1.0), (leader, 3, -1.0)])
-    lines += ["*BOUNDARY", f"P{part.name},2,2"]
-    lines += [f"{wedge.first[node]},1,1" for node in {*wedge.plane.axis, *part.clamped}]
-    lines += [f"{wedge.first[node]},3,3" for node in part.supported]
-    return lines
+    lines = ["*EQUATION"] if part.equations else []
+    for terms in part.equations:
+        lines += _equation(terms)
+    lines += ["*BOUNDARY"] if part.held else []
+    return [*lines, *(f"{node},{direction},{direction}" for node, direction in part.held)]
 
 
 def _observer(observer: Observer) -> list[str]:
-    """Only its axial displacement means anything."""
-    terms = zip(observer.nodes.tolist(), observer.weights.tolist(), strict=True)
+    """Only its displacement along z means anything."""
+    terms = [(node, direction, -weight) for node, direction, weight in observer.terms]
     return [
         f"*NODE, NSET=O{observer.name}",
         f"{observer.node},0,0,0",
         "*EQUATION",
-        *_equation([(observer.node, 3, 1.0), *((node, 3, -weight) for node, weight in terms)]),
+        *_equation([(observer.node, AXIAL, 1.0), *terms]),
     ]
+
+
+def _printed(observer: Observer, what: str) -> list[str]:
+    return [f"*NODE PRINT, NSET=O{observer.name}", what]
 
 
 def _contact(contact: Contact) -> list[str]:

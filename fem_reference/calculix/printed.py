@@ -23,7 +23,7 @@ class Printed:
     """Values by time; every name has one row per increment.
 
     ``(displacements|velocities, SET)`` has the axial value of each node of the set, by node number;
-    ``(internal|kinetic, SET)`` its energy; ``(force, SLAVE)`` the axial force on the slave.
+    ``(internal|kinetic, SET)`` its energy; ``(force, SLAVE)`` the force (3,) on the slave.
     """
 
     path: Path
@@ -63,7 +63,7 @@ class Printed:
         lines = [line.split() for line in body.splitlines() if line.strip()]
         try:
             if what == "force":
-                values = [float(lines[1][2])]
+                values = [float(lines[1][k]) for k in range(3)]
             elif what in ("internal", "kinetic"):
                 values = [float(lines[0][0])]
             else:
@@ -78,7 +78,11 @@ class Printed:
 
     def curve(self, what: str, of: str, count: int | None = None) -> Floats:
         """(increments,) the first value over time, of the first ``count`` increments."""
-        return np.array([row[0] for row in self.rows[what, of][:count]])
+        return self.table(what, of, count)[:, 0]
+
+    def table(self, what: str, of: str, count: int | None = None) -> Floats:
+        """(increments, values) of the first ``count`` increments."""
+        return np.array(self.rows[what, of][:count])
 
 
 def frequencies(path: Path) -> Floats:
@@ -95,3 +99,20 @@ def frequencies(path: Path) -> Floats:
     if not found:
         raise SolverError("CalculiX printed no eigenfrequencies")
     return np.array(found)
+
+
+def shapes(path: Path, sets: list[str]) -> Floats:
+    """(modes, sets) axial displacements of single nodes in the modes of a frequency step.
+
+    Raises:
+        SolverError: one is missing.
+    """
+    text = path.read_text(encoding="ascii", errors="replace") if path.exists() else ""
+    columns = []
+    for name in sets:
+        heading = rf"^ displacements \(.*\) for set {name} and time .*\n\s*\n(.*)$"
+        rows = [row.split() for row in re.findall(heading, text, re.MULTILINE)]
+        columns.append([float(row[3]) for row in rows if len(row) == 4])
+    if not columns[0] or len({len(column) for column in columns}) != 1:
+        raise SolverError("CalculiX printed no shapes of its modes")
+    return np.array(columns).T

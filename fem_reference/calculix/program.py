@@ -26,6 +26,10 @@ STALLED = 1800.0
 LEAST_VERSION = (2, 18)
 
 
+class DivergedError(SolverError):
+    """The iterations of a step did not converge, or its energy was too far off."""
+
+
 def program() -> str:
     """CalculiX's program.
 
@@ -82,6 +86,7 @@ def run(deck: str, folder: Path, watch: Callable[[Path], bool], threads: int = 1
         threads: of CalculiX, at most.
 
     Raises:
+        DivergedError: a step did, which a shorter one may not.
         SolverError: CalculiX is missing, failed, or stands still.
     """
     path = program()
@@ -109,7 +114,8 @@ def run(deck: str, folder: Path, watch: Callable[[Path], bool], threads: int = 1
             process.kill()
             process.wait()
     if process.returncode != 0:
-        raise SolverError(_failure(process.returncode, log))
+        reason = _failure(process.returncode, log)
+        raise DivergedError(reason) if "diverge" in reason else SolverError(reason)
     return printed
 
 

@@ -15,7 +15,9 @@ import numpy as np
 
 from ..axisymmetric.mesh import BodyMesh
 from ..common.arrays import Floats, Ints
+from ..common.bodies import Material
 from ..common.errors import SolverError
+from .deck import Elements, Part
 
 ANGLE = math.radians(2.0)
 """Between both sides: the one CalculiX takes."""
@@ -107,8 +109,7 @@ class Wedge:
     """Number and place (3,) of every node, m."""
     twins: list[tuple[int, int, float]]
     """Node, the one on the first side that it follows, and the angle between them."""
-    elements: dict[str, list[tuple[int, list[int]]]]
-    """By CalculiX's type: number and nodes of each element."""
+    elements: Elements
     faces: dict[tuple[int, int], tuple[int, str]]
     """Element and its face on each edge (element, edge) of the plane."""
 
@@ -144,7 +145,7 @@ def wedge(plane: Quadratic, node: int, element: int) -> Wedge:
     nodes += placed(second, off, ANGLE) + placed(half, corners, 0.5 * ANGLE)
     twins = [(int(second[k]), int(first[k]), ANGLE) for k in off]
     twins += [(int(half[k]), int(first[k]), 0.5 * ANGLE) for k in corners]
-    elements: dict[str, list[tuple[int, list[int]]]] = {"C3D20R": [], "C3D15": []}
+    elements: Elements = {"C3D20R": [], "C3D15": []}
     faces: dict[tuple[int, int], tuple[int, str]] = {}
     on_axis = plane.points[:, 0] == 0.0
     for k, quad in enumerate(plane.quads):
@@ -170,3 +171,28 @@ def wedge(plane: Quadratic, node: int, element: int) -> Wedge:
         elements["C3D15"].append((number, [int(i) for i in ids]))
         faces |= {(k, turn[j]): (number, f"S{face}") for j, face in ((0, 1), (1, 4), (2, 2))}
     return Wedge(plane, first, nodes, twins, elements, faces)
+
+
+def wedge_part(
+    name: str, wedge: Wedge, material: Material, clamped: Ints, supported: Ints, speed: float = 0.0
+) -> Part:
+    """A body of revolution.
+
+    Args:
+        name: of the body.
+        wedge: its elements.
+        material: of all of it.
+        clamped: nodes of the plane that cannot move along r.
+        supported: nodes of the plane that cannot move along z.
+        speed: along z at the start, m/s.
+    """
+    first, equations = wedge.first, []
+    for twin, leader, angle in wedge.twins:
+        cosine, sine = math.cos(angle), math.sin(angle)
+        equations.append([(twin, 1, 1.0), (leader, 1, -cosine)])
+        equations.append([(twin, 2, 1.0), (leader, 1, -sine)])
+        equations.append([(twin, 3, 1.0), (leader, 3, -1.0)])
+    held = [(node, 2) for node in first.tolist()]
+    held += [(int(first[node]), 1) for node in {*wedge.plane.axis, *clamped}]
+    held += [(int(first[node]), 3) for node in supported]
+    return Part(name, wedge.nodes, wedge.elements, material, held, equations, (0.0, 0.0, speed))

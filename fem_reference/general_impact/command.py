@@ -10,7 +10,7 @@ from typing import Any
 
 from ..common.arguments import Study
 from ..common.errors import SceneError, SolverError
-from ..common.settings import SOLVERS, Options
+from ..common.settings import Options
 from ..impact.command import solve_scene
 
 LEAST_GMSH = (4, 12)
@@ -69,8 +69,6 @@ def _solve(document: Any, arguments: argparse.Namespace) -> None:
     from .scene import parse_scene
 
     scene, options = parse_scene(document), Options.of(arguments)
-    if options.solver != SOLVERS[0]:
-        raise SceneError(f"--solver is {options.solver}; of this scene it must be {SOLVERS[0]}")
     if scene.body is not None:
         require_gmsh()
         require_content(arguments.body, scene.body.content)
@@ -78,7 +76,7 @@ def _solve(document: Any, arguments: argparse.Namespace) -> None:
     def made(comm: Any) -> Any:
         from .result import solver
 
-        return solver(scene, arguments.body, comm)
+        return solver(scene, arguments.body, comm, options)
 
     solve_scene(arguments, options, made)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -44,29 +45,55 @@ class Bodies:
         return first_frequency(self.loop, STRUCK, start=start, floating=floating)
 
 
+@dataclass(frozen=True)
+class Softness:
+    """What a contact's pressure displaces of one of its bodies."""
+
+    body: int
+    """Number among the elastic ones."""
+    load: Floats
+    """(3 n,) unit load in the loop's order."""
+    flexibility: float
+    """m/N"""
+
+
+def softness(bodies: Bodies) -> list[list[Softness]]:
+    """Of each side what is struck, then its own body if that is elastic."""
+    loop, found = bodies.loop, []
+    for side in bodies.made.sides:
+        patches = [(STRUCK, side.patch)]
+        if side.own is not None and side.body is not None:
+            patches.append((side.body, side.own))
+        loads = [(body, patch.load(loop, body)) for body, patch in patches]
+        found.append(
+            [
+                Softness(body, load, flexibility(loop, body, load, bodies.floating[body]))
+                for body, load in loads
+            ]
+        )
+    return found
+
+
 def impact_ending(motion: Motion) -> Ending:
     """When all bodies can be proven never to touch again."""
     loop, made = motion.loop, motion.made
     bodies = Bodies(loop, made)
-    loads, flexibilities = [], []
-    for side in made.sides:
-        patches = [(STRUCK, side.patch)]
-        if side.own is not None and side.body is not None:
-            patches.append((side.body, side.own))
-        of_side = [(body, patch.load(loop, body)) for body, patch in patches]
-        loads.append(of_side[0][1])
-        flexibilities.append(
-            [(body, flexibility(loop, body, load, bodies.floating[body])) for body, load in of_side]
-        )
+    found = softness(bodies)
 
     def approaches(energies: Energies) -> Iterator[Approach]:
-        for side, load, softness in zip(made.sides, loads, flexibilities, strict=True):
+        for side, of_side in zip(made.sides, found, strict=True):
             clearance, opening = (
                 float(side.strike.normal @ motion.of_side(vector, side))
-                - (bodies.rigid(load, getattr(loop, vector), STRUCK) if made.has_struck else 0.0)
+                - (
+                    bodies.rigid(of_side[0].load, getattr(loop, vector), STRUCK)
+                    if made.has_struck
+                    else 0.0
+                )
                 for vector in ("u", "v")
             )
-            vibrating = tuple((bodies.vibration(energies, body), c) for body, c in softness)
+            vibrating = tuple(
+                (bodies.vibration(energies, each.body), each.flexibility) for each in of_side
+            )
             yield Approach(side.gap + clearance, opening, vibrating)
 
     return Ending(loop, approaches)

@@ -116,6 +116,13 @@ class Sizes:
     radii: dict[str, float]
     duration: float
     factor: float
+    steepest: float = math.inf
+    """Largest growth of the elements per distance."""
+
+    @property
+    def slope(self) -> float:
+        """Growth of the elements per distance."""
+        return min(SLOPE / self.factor, self.steepest)
 
     @property
     def slope(self) -> float:

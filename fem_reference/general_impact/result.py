@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from ..common.arrays import Floats
+from ..common.settings import Options
 from ..impact.history import Force, Level, curve_uncertainty
 from ..impact.result import Details, ImpactSolver
-from ..impact.series import MeshResult, Target
-from ..solid.elasticity import write_fields
+from ..impact.series import MeshResult, Solved, Target
+from . import solve as explicit
+from .estimate import Sizes
+from .run import Run
 from .scene import Scene
-from .solve import Solution, compute, method
 
 RATIO = 0.84
 """Elements of a mesh over those of the next finer one, in every direction."""
@@ -47,15 +49,55 @@ def curves(scene: Scene) -> tuple[Level | Force, ...]:
     return tuple(curve for curve in CURVES if scene.has(curve.name))
 
 
-def solver(scene: Scene, file: Path | None, comm: Any) -> ImpactSolver[Solution]:
-    """How the scene is solved; ``file`` has the shape of its body."""
+class Solution(Solved, Protocol):
+    """A verified run on one mesh, by this package or by another program."""
+
+    @property
+    def run(self) -> Run:
+        """The run."""
+
+    @property
+    def sizes(self) -> Sizes:
+        """Of the mesh."""
+
+    def program(self) -> str | None:
+        """That made it; None: this package."""
+
+    def first_frequency(self) -> float:
+        """Lowest frequency of what is struck that the contacts excite, Hz."""
+
+    def machine(self) -> dict[str, Any]:
+        """For the summary's ``solver``."""
+
+    def mesh_report(self) -> dict[str, Any]:
+        """For the summary's ``mesh``."""
+
+    def settings(self) -> dict[str, Any]:
+        """For the provenance."""
+
+    def write_fields(self, folder: Path) -> list[float]:
+        """Mesh and fields kept; their instants, s."""
+
+
+def solver(scene: Scene, file: Path | None, comm: Any, options: Options) -> ImpactSolver[Solution]:
+    """How the scene is solved; ``file`` has the shape of its body.
+
+    Raises:
+        SceneError: CalculiX does not cover the scene.
+    """
+    by: Any = explicit
+    if options.solver == "calculix":
+        from . import calculix as by
+        from .calculix_model import require_supported
+
+        require_supported(scene, options, comm.size)
     return ImpactSolver(
         scene=scene,
-        method=method(scene),
+        method=by.method(scene),
         end_time=scene.end_time,
         ratio=RATIO,
         targeted=tuple(target for target in TARGETED if scene.has(target.name)),
-        compute=lambda factor, settings, report, _: compute(
+        compute=lambda factor, settings, report, _: by.compute(
             scene, file, factor, settings, comm, report
         ),
         quantities=partial(quantities, scene),
@@ -91,18 +133,19 @@ def _details(
     scene: Scene, folder: Path, solution: Solution, meshes: list[MeshResult], bands: Floats
 ) -> Details:
     """See `ImpactSolver.details`."""
-    run = solution.run
+    run, program = solution.run, solution.program()
     return Details(
         contacts=tuple(scene.partners()),
         duration=solution.sizes.duration,
         mesh=solution.mesh_report(),
         solver=solution.machine(),
         settings=solution.settings(),
-        stress_times=write_fields(folder, solution.made.model, solution.recorder),
+        stress_times=solution.write_fields(folder),
         summary={name: None for name in OF_SOME_SCENES if not scene.has(name)}
         | {
             f"{name}_contacts": None if run.in_contact_at_end else contact.count
             for name, contact in zip(scene.partners(), run.contacts, strict=True)
-        },
+        }
+        | ({"source": "external", "model": program} if program else {}),
         uncertainty=curve_uncertainty(curves(scene), bands),
     )

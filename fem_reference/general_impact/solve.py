@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from ..common.errors import SolverError
 from ..common.output import write_json
 from ..common.progress import Report
 from ..common.settings import Settings
 from ..explicit.loop import Loop
+from ..solid.elasticity import write_fields
 from ..solid.mesh import mesh_report
 from ..solid.meshing import rounded
 from ..solid.stepping import Stepped, stepped
@@ -31,19 +34,26 @@ ACCEPTED_SHARE = 0.8
 """That any mesh has to have."""
 
 
+class Solved(Protocol):
+    """What is asked of a solution on one mesh."""
+
+    @property
+    def run(self) -> Run:
+        """The run."""
+
+
+S = TypeVar("S", bound=Solved)
+
+
 @dataclass(frozen=True, kw_only=True)
-class Solution(Stepped[Run]):
-    """A verified run."""
+class Meshed:
+    """On a mesh that was made for the contact radii found."""
 
     made: ImpactModel
     sizes: Sizes
     meshes_tried: int
     elements_per_radius: dict[str, float]
     """Found at the peak forces, by contact."""
-
-    def first_frequency(self) -> float:
-        """Lowest frequency of what is struck that the contacts excite, Hz."""
-        return Bodies(self.loop, self.made).first_frequency()
 
     def mesh_report(self) -> dict[str, Any]:
         """For the summary's ``mesh``."""
@@ -63,6 +73,23 @@ class Solution(Stepped[Run]):
         }
 
 
+@dataclass(frozen=True, kw_only=True)
+class Solution(Stepped[Run], Meshed):
+    """A verified run."""
+
+    def first_frequency(self) -> float:
+        """Lowest frequency of what is struck that the contacts excite, Hz."""
+        return Bodies(self.loop, self.made).first_frequency()
+
+    def program(self) -> str | None:
+        """That made it; None: this package."""
+        return None
+
+    def write_fields(self, folder: Path) -> list[float]:
+        """Mesh and fields kept; their instants, s."""
+        return write_fields(folder, self.made.model, self.recorder)
+
+
 def method(scene: Scene) -> list[Any]:
     """What kept states and results depend on, meshes and step apart."""
     return [REVISION, scene.raw]
@@ -73,43 +100,64 @@ def compute(
 ) -> Solution:
     """Solve a scene with ``factor`` times the elements requested, in every direction.
 
-    The first mesh of a series is made again until its contact radii are those for which it was
-    made. They are kept, and all other meshes are made for them.
-
     Raises:
         SceneError: the scene is outside the method.
         SolverError: meshing or the run failed, too little memory, or the mesh stayed too coarse.
     """
+
+    def solved(made: ImpactModel, sizes: Sizes, attempt: int) -> Stepped[Run]:
+        def step(loop: Loop, **options: Any) -> Run:
+            return integrate(loop, made, scene, sizes.duration, **options)
+
+        return stepped(
+            made.model, method(scene), settings, comm, report, step, suffix=f"-{attempt}"
+        )
+
+    done, meshed = on_fitting_mesh(
+        scene, file, factor, settings, comm, report, method(scene), solved
+    )
+    return Solution(**vars(done), **vars(meshed))
+
+
+def on_fitting_mesh(
+    scene: Scene,
+    file: Path | None,
+    factor: float,
+    settings: Settings,
+    comm: Any,
+    report: Report,
+    method: list[Any],
+    solved: Callable[[ImpactModel, Sizes, int], S],
+    steepest: float = math.inf,
+) -> tuple[S, Meshed]:
+    """Solve with ``solved``, which gets model, sizes and the number of the attempt.
+
+    The first mesh of a series is made again until its contact radii are those for which it was
+    made. They are kept for this ``method``, and all other meshes are made for them. Elements
+    grow by ``steepest`` per distance at most.
+
+    Raises:
+        SceneError, SolverError: see `compute`.
+    """
     first = estimate(scene)
-    kept = comm.bcast(_kept(scene, settings) if comm.rank == 0 else None)
+    kept = comm.bcast(_kept(method, settings) if comm.rank == 0 else None)
     radii = kept or {name: rounded(radius) for name, radius in first.radii.items()}
     requested = scene.elements_per_contact_radius * factor
     for attempt in range(1, MOST_MESHES + 1):
         report("mesh", 0.0, "meshing")
-        sizes = Sizes(scene, radii, first.duration, factor)
+        sizes = Sizes(scene, radii, first.duration, factor, steepest)
         # gmsh runs in one process; the others wait
         made: ImpactModel = comm.bcast(impact_model(scene, sizes, file) if comm.rank == 0 else None)
-
-        def step(loop: Loop, made: ImpactModel = made, **options: Any) -> Run:
-            return integrate(loop, made, scene, first.duration, **options)
-
-        done = stepped(
-            made.model, method(scene), settings, comm, report, step, suffix=f"-{attempt}"
-        )
+        done = solved(made, sizes, attempt)
         found, inside = _elements_per_radius(scene, made, done.run), _is_inside(made, done.run)
         shares = [each / requested for each in found.values()]
         right = min(shares) >= LEAST_SHARE and max(shares) <= LARGEST_SHARE
         last = attempt == MOST_MESHES or kept is not None
         if inside and (right or (last and min(shares) >= ACCEPTED_SHARE)):
             if comm.rank == 0 and kept is None:
-                _keep(scene, settings, radii)
-            return Solution(
-                **vars(done),
-                made=made,
-                sizes=sizes,
-                meshes_tried=attempt,
-                elements_per_radius=found,
-            )
+                _keep(method, settings, radii)
+            meshed = Meshed(made=made, sizes=sizes, meshes_tried=attempt, elements_per_radius=found)
+            return done, meshed
         radii = {
             side.name: rounded((1.0 if inside else 1.3) * radius)
             for side, radius in zip(made.sides, _radii(scene, made, done.run), strict=True)
@@ -157,18 +205,18 @@ def _file(settings: Settings) -> Path:
     return settings.folder / "contact-radii.json"
 
 
-def _kept(scene: Scene, settings: Settings) -> dict[str, float] | None:
+def _kept(method: list[Any], settings: Settings) -> dict[str, float] | None:
     """The contact radii that the first mesh of the series has found."""
     try:
         document = json.loads(_file(settings).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    same = document.get("method") == json.loads(json.dumps(method(scene)))
+    same = document.get("method") == json.loads(json.dumps(method))
     return dict(document["radii"]) if same else None
 
 
-def _keep(scene: Scene, settings: Settings, radii: dict[str, float]) -> None:
+def _keep(method: list[Any], settings: Settings, radii: dict[str, float]) -> None:
     settings.folder.mkdir(parents=True, exist_ok=True)
     partial = settings.folder / ".partial-contact-radii.json"
-    write_json(partial, {"method": method(scene), "radii": radii})
+    write_json(partial, {"method": method, "radii": radii})
     partial.replace(_file(settings))

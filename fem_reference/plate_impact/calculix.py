@@ -22,6 +22,7 @@ import numpy as np
 from ..axisymmetric.statics import patch_flexibility
 from ..axisymmetric.system import INNER, OUTER, PLATE, hertz_weights
 from ..calculix import program
+from ..calculix.contacts import DAMPING
 from ..calculix.deck import FREE_MODES, MILLI, Deck, Steps
 from ..calculix.printed import Printed, frequencies
 from ..common.errors import SolverError
@@ -30,7 +31,7 @@ from ..common.settings import Settings
 from ..impact.ending import Approach
 from .axisymmetric_motion import WINDOW
 from .calculix_model import PENALTY, SLAVES, Model, model
-from .calculix_observed import DAMPING, Observed, run_of
+from .calculix_observed import Observed, run_of
 from .estimate import MOST_MESHES, WAVE_FREQUENCY, ContactEstimate, estimate_contact
 from .meshing import ImpactMesh, build_system, mesh_impact, mesh_settings
 from .motion import SIDES

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..axisymmetric.mesh import BodyMesh, face_nodes
 from ..axisymmetric.system import hertz_weights
-from ..calculix.deck import Contact, Deck, Observer, Part
-from ..calculix.wedge import Quadratic, quadratic, wedge
+from ..calculix.deck import AXIAL, Contact, Deck, Observer, Part, Term
+from ..calculix.wedge import Quadratic, Wedge, quadratic, wedge, wedge_part
 from ..common.arrays import Floats, Ints
 from ..common.bodies import Sphere
 from ..common.errors import SceneError
@@ -98,6 +98,7 @@ def model(scene: Scene, mesh: ImpactMesh) -> Model:
     speeds = (-scene.speed, 0.0, scene.inner_speed)
     none = np.zeros(0, dtype=np.int64)
     parts: list[Part] = []
+    wedges: list[Wedge] = []
     node = element = 1
     for name, plane, material, speed in zip(BODIES, planes, scene.materials, speeds, strict=True):
         solid = wedge(plane, node, element)
@@ -105,13 +106,16 @@ def model(scene: Scene, mesh: ImpactMesh) -> Model:
         if name == "PLATE" and scene.plate.edge != "free":
             rim = np.flatnonzero(plane.points[:, 0] > scene.plate.radius * (1.0 - 1e-9))
         clamped = rim if scene.plate.edge == "clamped" else none
-        parts.append(Part(name, solid, material, clamped, rim, speed))
+        parts.append(wedge_part(name, solid, material, clamped, rim, speed))
+        wedges.append(solid)
         node, element = solid.nodes[-1][0] + 1, element + len(plane.quads)
     contacts = []
-    for part, face, (sphere, _, side), centre, zone in zip(
-        (parts[0], parts[2]), (half, -half), places, centres, zones, strict=True
+    plate = wedges[1]
+    for name, solid, face, (sphere, _, side), centre, zone in zip(
+        *((BODIES[0], BODIES[2]), (wedges[0], wedges[2]), (half, -half), places, centres, zones),
+        strict=True,
     ):
-        points, plate = part.wedge.plane.points, parts[1].wedge
+        points = solid.plane.points
         from_centre = np.hypot(points[:, 0], points[:, 1] - centre[1])
         on_sphere = np.abs(from_centre - sphere.radius) < 1e-6 * sphere.radius
         near = (points[:, 0] < SLAVES * zone) & (side * (points[:, 1] - centre[1]) < 0.0)
@@ -119,21 +123,29 @@ def model(scene: Scene, mesh: ImpactMesh) -> Model:
         modulus = effective_modulus(sphere.material, scene.plate.material)
         contacts.append(
             Contact(
-                part.name,
-                part.wedge.surface(np.flatnonzero(on_sphere & near)),
+                name,
+                solid.surface(np.flatnonzero(on_sphere & near)),
                 plate.surface(on_face[plate.plane.points[on_face, 0] < MASTERS * zone]),
                 PENALTY * modulus / mesh.settings.contact_element,
             )
         )
     volumes = [plane.nodal_volumes() for plane in planes]
     observers = [
-        Observer(part.name, node + k, part.wedge.first, volume / volume.sum())
-        for k, (part, volume) in enumerate(zip(parts, volumes, strict=True))
+        Observer(name, node + k, _axial(solid, volume / volume.sum()), speed)
+        for k, (name, solid, volume, speed) in enumerate(
+            zip(BODIES, wedges, volumes, speeds, strict=True)
+        )
     ]
     faces, shares = _watched(scene, planes[1])
-    observers.append(Observer(FACES, node + len(parts), parts[1].wedge.first[faces], shares))
+    observers.append(Observer(FACES, node + len(parts), _axial(plate, shares, faces)))
     masses = [m.density * float(v.sum()) for m, v in zip(scene.materials, volumes, strict=True)]
     return Model(Deck(parts, contacts, observers), planes, (masses[0], masses[1], masses[2]))
+
+
+def _axial(solid: Wedge, weights: Floats, of: Ints | slice = slice(None)) -> list[Term]:
+    """Axial displacements of nodes of the plane, weighted."""
+    nodes = solid.first[of].tolist()
+    return [(node, AXIAL, weight) for node, weight in zip(nodes, weights.tolist(), strict=True)]
 
 
 def _watched(scene: Scene, plate: Quadratic) -> tuple[Ints, Floats]:

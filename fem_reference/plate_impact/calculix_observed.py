@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..calculix.contacts import contact_record, impulses
 from ..calculix.deck import MILLI
 from ..calculix.printed import Printed
 from ..calculix.wedge import SHARE
@@ -19,12 +20,6 @@ from .calculix_model import BODIES, FACES
 from .motion import SIDES
 from .run import Run
 from .scene import Scene
-
-DAMPING = -0.05
-"""Alpha of the steps: keeps the contacts from chattering."""
-OPEN = 2e-3
-"""Share of a contact's largest force below which it does not show when the contact ends: single
-points of integration are left then, which may even pull for a step."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +50,8 @@ class Observed:
         speeds = (scene.speed, 0.0, scene.inner_speed)
         masses = (scene.outer.mass, 0.0, scene.inner.mass)
         start = [0.5 * mass * speed**2 for mass, speed in zip(masses, speeds, strict=True)]
-        forces = curves("force", ("SOUTER", "SINNER")) * np.array(SIDES)
+        pairs = [printed.table("force", name, count)[:, 2] for name in ("SOUTER", "SINNER")]
+        forces = np.column_stack(pairs) * np.array(SIDES)
         return Observed(
             np.insert(np.array(printed.times[:count]) / MILLI, 0, 0.0),
             np.vstack([np.zeros(4), curves("displacements", seen) / MILLI]),
@@ -82,55 +78,14 @@ class Observed:
         return np.asarray(self.forces > 0.0)
 
 
-def impulses(forces: Floats, time_step: float) -> Floats:
-    """Impulse so far of forces (m, k) as the steps count them, N s.
-
-    M a_n = (1 + alpha) F_n - alpha F_(n-1), and Newmark's rule with gamma = 1/2 - alpha.
-    """
-    before = np.vstack([np.zeros_like(forces[:1]), forces[:-1]])
-    acting = (1.0 + DAMPING) * forces - DAMPING * before
-    gamma = 0.5 - DAMPING
-    gained = time_step * ((1.0 - gamma) * acting[:-1] + gamma * acting[1:])
-    return np.vstack([np.zeros_like(forces[:1]), np.cumsum(gained, axis=0)])
-
-
-def contact_end(times: Floats, force: Floats) -> float | None:
-    """End of the last contact, s: the approach, like F^(2/3), goes on to zero as it went before."""
-    pressed = np.flatnonzero(force > OPEN * force.max())
-    if pressed.size == 0:
-        return None
-    last = int(pressed[-1])
-    if last in (0, times.size - 1) or not force[last - 1] > force[last]:
-        return float(times[last])
-    before, now = force[last - 1 : last + 1] ** (2.0 / 3.0)
-    return float(times[last] + (times[last] - times[last - 1]) * now / (before - now))
-
-
 def _record(scene: Scene, observed: Observed, number: int, chatter: float) -> ContactRecord:
-    times, force = observed.times, observed.forces[:, number]
-    pressed = observed.pressed[:, number]
-    starts = np.flatnonzero(pressed & ~np.insert(pressed[:-1], 0, False))
-    ends = np.flatnonzero(pressed & ~np.append(pressed[1:], False))
-    spans: list[tuple[float, float]] = []
-    for start, end in zip(starts, ends, strict=True):
-        first = float(times[max(int(start) - 1, 0)])
-        if spans and first - spans[-1][1] < chatter:
-            first = spans.pop()[0]
-        spans.append((first, float(times[end])))
-    last = contact_end(times, force)
-    if last is not None:
-        spans[-1] = (spans[-1][0], last)
     body = (scene.outer, scene.inner)[number]
-    peak = max(float(force.max()), 0.0)
     modulus = effective_modulus(body.material, scene.plate.material)
-    return ContactRecord(
-        count=len(spans),
-        end=last,
-        intervals=tuple(spans),
-        force_peak=peak,
-        impulse=float(impulses(observed.forces, times[1] - times[0])[-1, number]),
-        outermost_radius=hertz_contact_radius(peak, modulus, body.tip_radius),
-    )
+
+    def radius(force: float) -> float:
+        return hertz_contact_radius(force, modulus, body.tip_radius)
+
+    return contact_record(observed.times, observed.forces[:, number], chatter, radius)
 
 
 def run_of(

@@ -26,8 +26,12 @@ class Patch:
 
     def load(self, loop: Loop, body: int) -> Floats:
         """(3 n,) unit load along the normals that falls off parabolically with the distance."""
-        weights = self.areas * np.maximum(0.0, 1.0 - (self.distances / self.reach) ** 2)
         load = np.zeros((loop.system.mass.size, 3))
         first = int(loop.system.first[body])
-        load[first + self.nodes] = (weights / weights.sum())[:, None] * self.normals
+        load[first + self.nodes] = self.weights()[:, None] * self.normals
         return loop.own(load)
+
+    def weights(self) -> Floats:
+        """(n,) shares of the nodes in that load."""
+        weights = self.areas * np.maximum(0.0, 1.0 - (self.distances / self.reach) ** 2)
+        return np.asarray(weights / weights.sum())

@@ -10,7 +10,7 @@ pub use set_up::announce_set_ups;
 
 use super::{ClosedForm, Feature, Form, Starter, Use};
 use crate::error::Result;
-use crate::scene::{Model, Scene};
+use crate::scene::{Model, Scene, Shape};
 use std::path::Path;
 
 impl super::Kind for Kind {
@@ -28,6 +28,21 @@ impl super::Kind for Kind {
 
     fn body_file<'a>(&self, scene: &'a Scene) -> Option<&'a Path> {
         Some(&scene.general_impact().ok()?.body()?.file)
+    }
+
+    /// Dry elastic spheres on a body from a file, without damping.
+    fn calculix_takes(&self, scene: &Scene) -> bool {
+        let Ok(setup) = scene.general_impact() else { return false };
+        let Some(body) = setup.body() else { return false };
+        let inner = setup.inner.as_ref().map(|inner| &inner.shape);
+        let spheres = [Some(&setup.outer.shape), inner]
+            .into_iter()
+            .flatten()
+            .all(|shape| matches!(shape, Shape::Sphere { .. }));
+        let elastic = setup.materials().iter().all(|material| material.relaxation.is_empty());
+        let single = setup.series.is_none() && setup.outer.is_centred() && body.damping_ratio == 0.0;
+        let quadratic = scene.reference.element_order.is_none_or(|order| order == 2);
+        spheres && elastic && !yields(setup) && single && quadratic && scene.reference.rigid.is_none()
     }
 
     fn closed_forms(&self, scene: &Scene) -> Result<Vec<ClosedForm>> {
