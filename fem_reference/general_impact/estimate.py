@@ -116,18 +116,13 @@ class Sizes:
     radii: dict[str, float]
     duration: float
     factor: float
-    steepest: float = math.inf
+    steepest: float = STEEPEST
     """Largest growth of the elements per distance."""
 
     @property
     def slope(self) -> float:
-        """Growth of the elements per distance."""
+        """Growth of the elements per distance from the contact."""
         return min(SLOPE / self.factor, self.steepest)
-
-    @property
-    def slope(self) -> float:
-        """Growth of the element size per distance from the contact."""
-        return min(SLOPE / self.factor, STEEPEST)
 
     def least(self, name: str) -> float:
         """Size at a contact, m."""
