@@ -23,7 +23,7 @@ pub struct Arguments {
     /// Resolution of the mesh: coarse, paper (standard) or fine
     #[arg(long, default_value = "paper")]
     resolution: Resolution,
-    /// Solver: this project's, or CalculiX (`ccx`) as an independent one (dry impacts of elastic spheres on a plate)
+    /// Solver: this project's, or CalculiX (`ccx`) as an independent one (dry impacts of elastic spheres on a plate or a body)
     #[arg(long, value_enum, default_value_t = Solver::Fenicsx)]
     solver: Solver,
     /// Refine until the uncertainty (95 %) of efficiency and peak forces is at most this, such as 0.2%
