@@ -91,8 +91,8 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     sizes = chosen_sizes(made.walls, contacts, largest_element(scene))
     faces = made.fixed_faces(scene, sizes)
     edges = made.fixed_edges(faces, sizes)
-    for algorithms in _algorithms(part):
-        _generate(part, sizes, factor, edges, algorithms)
+    for pair in made.algorithms:
+        _generate(part, sizes, factor, edges, pair)
         body, number = _body(part)
         if qualities(body.points, body.cells).min() > POOR:
             break
@@ -118,6 +118,8 @@ class StruckPart:
     """A CAD part in gmsh with points at its contacts, ready to be meshed."""
 
     part: Part
+    algorithms: list[tuple[int, int]]
+    """Of surface and volume, in the order in which they are tried."""
     skin: Skin
     """First, coarse mesh of the surface, in gmsh's unit."""
     owner: Ints
@@ -147,6 +149,7 @@ def struck_part(scene: BodyScene, path: Path) -> StruckPart:
         SceneError: the file, a name or a point is not sound.
     """
     part = disc_part(scene.body.disc) if scene.body.disc else load(path, scene.body.unit)
+    algorithms = _algorithms(part)
     skin, owner = coarse_skin(part)
     found = walls(skin)
     strikes = {
@@ -154,7 +157,7 @@ def struck_part(scene: BodyScene, path: Path) -> StruckPart:
         for name, contact in scene.contacts().items()
     }
     points = {name: _point(strike) for name, strike in strikes.items()}
-    return StruckPart(part, skin, owner, found, strikes, points)
+    return StruckPart(part, algorithms, skin, owner, found, strikes, points)
 
 
 def _strike(part: Part, skin: Skin, owner: Ints, found: Walls, at: Place, path: str) -> Strike:

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from ..common.errors import SceneError, SolverError
-from ..solid.mesh import MINIMUM_QUALITY, TetMesh, qualities, surface, tetrahedra
+from ..solid.mesh import MINIMUM_QUALITY, TetMesh, edge_lengths, qualities, surface, tetrahedra
 from .body import Body, body_of, fixed_mask
 from .cad import DELAUNAY, FRONTAL, HXT, StruckPart, largest_element, struck_part
 from .contact import described, located
@@ -32,12 +32,16 @@ from .sizing import (
 )
 from .tets import volume
 
+DELAUNAY_SURFACE = 5
+"""gmsh's algorithm for surfaces that came as meshes; the frontal one takes minutes there."""
 TRIANGLE3, TETRAHEDRON4 = 2, 4
 """gmsh's numbers of elements."""
 EXACT_ZONES = 3.0
 """Distance from a contact up to which nodes are put on the exact body, over the fine zone."""
 TANGENT = 0.1
 """Directions in which the facets at a node have less than this share of their normals are left."""
+COARSER = 1.7
+"""Largest mean edge of the elements at a contact over the size requested."""
 SMALLER = (1.0, 0.98, 0.96)
 """Factors on the sizes away from the contacts that are tried until no element is flat."""
 
@@ -165,7 +169,9 @@ def _of_mesh(scene: BodyScene, path: Path, order: int, fineness: Fineness) -> Fi
         scaled = Walls(found.places / longest, found.thickness / longest, found.areas / longest**2)
         sizes = _far(scaled, fineness, longest, None)
         contacts = _at_contacts(fineness, points, strikes, longest)
-        mesh, _ = _unflat(path.name, order, longest, sizes, contacts, [], fineness)
+        # gmsh's curvature of a discrete surface is noise
+        flat = replace(fineness, per_circle=0.0)
+        mesh, _ = _unflat(path.name, order, longest, sizes, contacts, [], flat, DELAUNAY_SURFACE)
     exact = volume(body.points, body.cells)
     if abs(mesh.volume() - exact) > VOLUME_ERROR * exact:
         raise SolverError(
@@ -217,6 +223,7 @@ def _unflat(
     contacts: list[ContactSize],
     edges: list[tuple[int, float]],
     fineness: Fineness,
+    on_surface: int = FRONTAL,
 ) -> tuple[TetMesh, Ints]:
     """The mesh of gmsh's solid without flat elements, and the node of each of gmsh's tags.
 
@@ -226,7 +233,7 @@ def _unflat(
     reason, best = "", 0.0
     for smaller, algorithm in product(SMALLER, (DELAUNAY, HXT)):
         gmsh.model.mesh.clear()
-        for key, value in (("Algorithm", FRONTAL), ("Algorithm3D", algorithm), ("Optimize", 1)):
+        for key, value in (("Algorithm", on_surface), ("Algorithm3D", algorithm), ("Optimize", 1)):
             gmsh.option.setNumber(f"Mesh.{key}", value)
         gmsh.option.setNumber("Mesh.ElementOrder", 1)
         with tempfile.TemporaryDirectory() as folder:
@@ -239,12 +246,23 @@ def _unflat(
             except Exception as error:
                 reason = str(error).strip()
                 continue
+        coarse = [c for c in contacts if not _is_fine(points, corners, c, unit)]
+        if coarse:
+            reason = "gmsh made larger elements at a contact"
+            continue
         quality = float(qualities(points, corners).min())
         if quality > MINIMUM_QUALITY:
             return tetrahedra("body", points, corners, order), number
         best = max(best, quality)
         reason = f"the best mesh has an element of quality {best:.2g}"
     raise SolverError(f"{name} cannot be meshed as finely as its reference needs: {reason}")
+
+
+def _is_fine(points: Floats, corners: Ints, contact: ContactSize, unit: float) -> bool:
+    """Whether the elements at a contact are about as small as they should be."""
+    node = int(np.argmin(np.linalg.norm(points - unit * contact.place, axis=1)))
+    edges = edge_lengths(points, corners[(corners == node).any(axis=1)])
+    return float(edges.mean()) <= COARSER * unit * contact.size
 
 
 def _linear(unit: float) -> tuple[Floats, Ints, Ints]:

@@ -16,6 +16,10 @@ from ..impact.ending import Approach, Ending
 from .model import STRUCK, ImpactModel
 from .motion import Motion
 
+FREQUENCY_TOLERANCE = 2e-5
+"""Relative change of the square of the first frequency at which its iteration ends: bodies with
+several frequencies close together take long otherwise."""
+
 
 class Bodies:
     """The rigid motions of all elastic bodies, and what a contact's pressure displaces of them."""
@@ -42,7 +46,9 @@ class Bodies:
             for side in self.made.sides
         ]
         start = np.sum(shapes, axis=0)
-        return first_frequency(self.loop, STRUCK, start=start, floating=floating)
+        return first_frequency(
+            self.loop, STRUCK, tolerance=FREQUENCY_TOLERANCE, start=start, floating=floating
+        )
 
 
 @dataclass(frozen=True)

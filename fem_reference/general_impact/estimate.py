@@ -24,8 +24,9 @@ CANDIDATE_ZONE = 1.8
 """Radius of the zone of nodes that may touch over the contact radius expected."""
 LARGEST = 0.25
 """Largest element of a sphere over its radius."""
-SLOPE = 0.3
-"""Growth of the element size per distance from the contact, at factor 1."""
+SLOPE, STEEPEST = 0.2, 0.6
+"""Growth of the element size per distance from the contact, at factor 1, and at any: above, gmsh
+takes an element that reaches to the contact for small enough."""
 WALLS = 0.3
 """Largest element over the thickness of a wall, at factor 1."""
 PER_WAVE = {1: 24.0, 2: 8.0}
@@ -115,12 +116,12 @@ class Sizes:
     radii: dict[str, float]
     duration: float
     factor: float
-    steepest: float = math.inf
+    steepest: float = STEEPEST
     """Largest growth of the elements per distance."""
 
     @property
     def slope(self) -> float:
-        """Growth of the elements per distance."""
+        """Growth of the elements per distance from the contact."""
         return min(SLOPE / self.factor, self.steepest)
 
     def least(self, name: str) -> float:

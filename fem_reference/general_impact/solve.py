@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,12 +19,12 @@ from ..solid.mesh import mesh_report
 from ..solid.meshing import rounded
 from ..solid.stepping import Stepped, stepped
 from .ending import Bodies
-from .estimate import MINOR_FORCE, Sizes, contact_radius, estimate
+from .estimate import MINOR_FORCE, STEEPEST, Sizes, contact_radius, estimate
 from .model import ImpactModel, impact_model
 from .run import Run, integrate
 from .scene import Scene
 
-REVISION = 1
+REVISION = 2
 """Counts changes of the method that make older checkpoints useless."""
 MOST_MESHES = 4
 LEAST_SHARE, LARGEST_SHARE = 0.95, 1.1
@@ -128,7 +127,7 @@ def on_fitting_mesh(
     report: Report,
     method: list[Any],
     solved: Callable[[ImpactModel, Sizes, int], S],
-    steepest: float = math.inf,
+    steepest: float = STEEPEST,
 ) -> tuple[S, Meshed]:
     """Solve with ``solved``, which gets model, sizes and the number of the attempt.
 

@@ -288,9 +288,9 @@ def test_the_tip_of_a_cone_is_meshed(
 
 def test_iges_is_read_as_step_is(tmp_path: Path) -> None:
     """IGES has faces alone, which are sewn to a solid."""
-    scene = {"fixed": [[0.033, 0.0, 0.001]]}
+    fixed = [[0.033, 0.0, 0.001]]
     bodies = [
-        made(write_cad(tmp_path / f"plate.{ending}", plate), [0.0, 0.0, 0.002], **scene)
+        made(write_cad(tmp_path / f"plate.{ending}", plate), [0.0, 0.0, 0.002], fixed=fixed)
         for ending in ("step", "iges")
     ]
     step, iges = ((each.body.points, each.body.cells) for each in bodies)

@@ -320,13 +320,13 @@ def test_a_med_file_is_read_as_msh_is(plate_msh: Path, tmp_path: Path) -> None:
         gmsh.open(str(plate_msh))
         gmsh.write(str(med))
     ours, theirs = (result_of(path, "top", fixed=["rim"]) for path in (med, plate_msh))
-    places = [np.sort(each.body.points, axis=0) for each in (ours, theirs)]
-    assert np.allclose(*places, atol=1e-12)
+    mine, other = (np.sort(each.body.points, axis=0) for each in (ours, theirs))
+    assert np.allclose(mine, other, atol=1e-12)
     assert np.count_nonzero(ours.fixed) == np.count_nonzero(theirs.fixed) > 0
-    one, other = ours.contacts["outer"], theirs.contacts["outer"]
-    assert one is not None and other is not None
-    assert np.allclose(one["point"], other["point"], atol=1e-8)
-    assert one["edge_distance"] == pytest.approx(other["edge_distance"], rel=1e-6)
+    at, there = ours.contacts["outer"], theirs.contacts["outer"]
+    assert at is not None and there is not None
+    assert np.allclose(at["point"], there["point"], atol=1e-8)
+    assert at["edge_distance"] == pytest.approx(there["edge_distance"], rel=1e-6)
 
 
 def test_linear_elements_get_straight_midside_nodes(tmp_path: Path) -> None:

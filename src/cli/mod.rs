@@ -35,7 +35,6 @@ mod validated_scenes;
 mod watch;
 
 use crate::error::{Error, ExitStatus, Result};
-use crate::kinds::general_impact::{set_announcer, set_up};
 use crate::scene::{self, Scene};
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
@@ -201,7 +200,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
     };
     let context = Context { store: cli.store, quiet: cli.quiet, verbose: cli.verbose };
     let own = context.clone();
-    set_announcer(Box::new(move |unknowns| set_up::announce(unknowns, |line| own.note(line))));
+    crate::kinds::announce_set_ups(move |line| own.note(line));
     let result = match cli.command {
         Command::Reduced(arguments) => reduced::run(&context, &arguments),
         Command::Reference(arguments) => reference::run(&context, &arguments),

@@ -1,6 +1,6 @@
 //! What a column of a file is: the time or a curve, or what a curve is derived from.
 
-use super::layout::Layout;
+use super::layout::TextLayout;
 use crate::result::Curve;
 use crate::scene::{quantity_in, suggestion};
 use serde::Deserialize;
@@ -131,11 +131,11 @@ pub struct Column {
     pub measures: Measures,
     /// By which its channel is late, s.
     pub delay: f64,
-    /// Place of a column with its own times.
+    /// ColumnPlace of a column with its own times.
     pub clock: Option<usize>,
 }
 
-impl Layout {
+impl TextLayout {
     /// The unit of a column: in a line of units, or in its heading.
     pub(super) fn unit_of(&self, index: usize) -> Option<&str> {
         let stated = self.units.get(index).filter(|unit| !unit.is_empty());
@@ -179,7 +179,7 @@ pub fn unit_in_si(unit: &str, si: &str) -> Result<f64, String> {
 }
 
 /// The columns that the headings of a `layout` name: the time and `known` curves. Others are left out, but for what looks like a slip.
-pub(super) fn by_heading(layout: &Layout, known: &[Curve]) -> Result<Vec<Column>, String> {
+pub(super) fn by_heading(layout: &TextLayout, known: &[Curve]) -> Result<Vec<Column>, String> {
     let mut found: Vec<Column> = Vec::new();
     for (index, heading) in layout.headings.iter().enumerate() {
         let (name, _) = split_heading(heading)?;

@@ -1,6 +1,6 @@
 //! Where the numbers of a text begin, what separates them, and the headings above them.
 
-use super::map::Form;
+use super::map::TableForm;
 use super::rows::number;
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ const ABOVE: usize = 6;
 
 /// How a table of text is written.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Layout {
+pub struct TextLayout {
     /// Between columns; a space stands for any number of them.
     pub delimiter: char,
     /// Decimal sign.
@@ -46,18 +46,18 @@ pub(super) fn cells(line: &str, delimiter: char) -> Vec<String> {
 
 /// What a cell is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Cell {
+enum CellKind {
     Number,
     /// Nothing, or what programs write for a missing value.
     Missing,
     Text,
 }
 
-fn kind(cell: &str, decimal: char) -> Cell {
+fn kind(cell: &str, decimal: char) -> CellKind {
     match super::rows::is_missing(cell) {
-        true => Cell::Missing,
-        false if value(cell, decimal).is_some() => Cell::Number,
-        false => Cell::Text,
+        true => CellKind::Missing,
+        false if value(cell, decimal).is_some() => CellKind::Number,
+        false => CellKind::Text,
     }
 }
 
@@ -72,12 +72,12 @@ pub(super) fn value(cell: &str, decimal: char) -> Option<f64> {
 /// Whether something is a unit.
 pub type IsUnit = fn(&str) -> bool;
 
-impl Layout {
+impl TextLayout {
     /// Of `text`, as far as `form` does not say it; `one` column of numbers is enough where the times are known otherwise.
     ///
     /// # Errors
     /// One sentence.
-    pub fn of(text: &str, form: &Form, one: bool, is_unit: IsUnit) -> Result<Self, String> {
+    pub fn of(text: &str, form: &TableForm, one: bool, is_unit: IsUnit) -> Result<Self, String> {
         let lines: Vec<(usize, &str)> = lines(text).take(HEAD + form.skip).collect();
         let after_skipped = lines.get(form.skip).map_or(text.len(), |line| line.0);
         let shown = shown(&text[after_skipped..]);
@@ -86,14 +86,16 @@ impl Layout {
         let width = rows.iter().map(Vec::len).max().unwrap_or(0);
         // columns of numbers: no text in any line, a number in one at least
         let of =
-            |k: usize| rows.iter().map(move |row| row.get(k).map_or(Cell::Missing, |c| kind(c, decimal)));
+            |k: usize| rows.iter().map(move |row| row.get(k).map_or(CellKind::Missing, |c| kind(c, decimal)));
         let numeric: Vec<usize> = (0..width)
-            .filter(|k| of(*k).all(|c| c != Cell::Text) && of(*k).any(|c| c == Cell::Number))
+            .filter(|k| of(*k).all(|c| c != CellKind::Text) && of(*k).any(|c| c == CellKind::Number))
             .collect();
         let begins = |(_, line): &(usize, &str)| {
             let row = cells(line, delimiter);
-            let is = |k: &usize, cell: Cell| row.get(*k).map_or(Cell::Missing, |c| kind(c, decimal)) == cell;
-            numeric.iter().all(|k| !is(k, Cell::Text)) && numeric.iter().any(|k| is(k, Cell::Number))
+            let is = |k: &usize, cell: CellKind| {
+                row.get(*k).map_or(CellKind::Missing, |c| kind(c, decimal)) == cell
+            };
+            numeric.iter().all(|k| !is(k, CellKind::Text)) && numeric.iter().any(|k| is(k, CellKind::Number))
         };
         let first = lines.iter().skip(form.skip).position(begins).map(|k| k + form.skip);
         let first = first.ok_or_else(|| format!("its numbers do not begin within {HEAD} lines"))?;
@@ -141,7 +143,7 @@ fn shown(text: &str) -> Vec<&str> {
 }
 
 /// Delimiter and decimal sign: of those possible the ones with most lines of numbers, and of these with most columns.
-fn separators(shown: &[&str], form: &Form, one: bool) -> Result<(char, char), String> {
+fn separators(shown: &[&str], form: &TableForm, one: bool) -> Result<(char, char), String> {
     let delimiters: Vec<char> = match form.delimiter.as_deref() {
         None => DELIMITERS.to_vec(),
         Some("spaces") => vec![' '],
@@ -167,7 +169,7 @@ fn separators(shown: &[&str], form: &Form, one: bool) -> Result<(char, char), St
         for decimal in &decimals {
             let counts = shown.iter().filter_map(|line| {
                 let row = cells(line, *delimiter);
-                let numbers = row.iter().filter(|cell| kind(cell, *decimal) == Cell::Number).count();
+                let numbers = row.iter().filter(|cell| kind(cell, *decimal) == CellKind::Number).count();
                 (numbers >= least).then_some(numbers)
             });
             let (rows, columns) = counts.fold((0, 0), |(rows, most), count| (rows + 1, most.max(count)));
@@ -199,7 +201,7 @@ fn headings(
         !filled.is_empty() && filled.iter().all(|unit| is_unit(unit))
     };
     let fits = |row: &&Vec<String>| {
-        row.len() >= last && numeric.iter().any(|k| kind(&cell(row, *k), '.') == Cell::Text)
+        row.len() >= last && numeric.iter().any(|k| kind(&cell(row, *k), '.') == CellKind::Text)
     };
     let mut fitting = above.iter().filter(fits).peekable();
     let units = match (stated, fitting.peek()) {
@@ -223,9 +225,9 @@ fn headings(
 mod tests {
     use super::*;
 
-    fn layout(text: &str) -> Layout {
+    fn layout(text: &str) -> TextLayout {
         let is_unit = |unit: &str| ["s", "second", "m/s", "us", "V", "Volt", "mV"].contains(&unit);
-        Layout::of(text, &Form::default(), false, is_unit).expect("a layout")
+        TextLayout::of(text, &TableForm::default(), false, is_unit).expect("a layout")
     }
 
     /// Forms of exports of oscilloscopes and measuring programs.
@@ -277,10 +279,11 @@ mod tests {
 
     #[test]
     fn what_is_no_table_is_said() {
-        let refuse = |text: &str| Layout::of(text, &Form::default(), false, |_| false).expect_err("none");
+        let refuse =
+            |text: &str| TextLayout::of(text, &TableForm::default(), false, |_| false).expect_err("none");
         assert!(refuse("only words\nand more\n").contains("no columns of numbers"));
         assert!(refuse("").contains("no columns"));
-        let form = Form { delimiter: Some("::".into()), ..Form::default() };
-        assert!(Layout::of("1,2", &form, false, |_| false).expect_err("none").contains("one character"));
+        let form = TableForm { delimiter: Some("::".into()), ..TableForm::default() };
+        assert!(TextLayout::of("1,2", &form, false, |_| false).expect_err("none").contains("one character"));
     }
 }

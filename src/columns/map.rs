@@ -2,7 +2,7 @@
 //! be missing: what is not said is inferred from the file.
 
 use super::column::{Column, Measures, known_column, unit_in_si};
-use super::layout::Layout;
+use super::layout::TextLayout;
 use crate::result::{Curve, Quantity};
 use crate::scene::quantity_in;
 use serde::Deserialize;
@@ -15,16 +15,16 @@ use std::fmt::Write;
 pub struct Map {
     /// Who made the file with what.
     pub provenance: Provenance,
-    /// Form of the text.
-    pub table: Form,
+    /// TableForm of the text.
+    pub table: TableForm,
     /// The times, where no column has them.
     pub time: Option<Even>,
     /// Columns by the name of the curve, or `time`.
     pub(super) columns: BTreeMap<String, Mapped>,
     /// Results that a program states, by their names.
-    quantities: BTreeMap<String, Number>,
+    quantities: BTreeMap<String, SiNumber>,
     /// Half widths of their 95 % bands.
-    uncertainty: BTreeMap<String, Number>,
+    uncertainty: BTreeMap<String, SiNumber>,
 }
 
 /// Who made a result with what.
@@ -41,10 +41,10 @@ pub struct Provenance {
     pub mesh: Option<String>,
 }
 
-/// Form of a table of text.
+/// TableForm of a table of text.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Form {
+pub struct TableForm {
     /// Lines to leave out at the beginning.
     pub skip: usize,
     /// Between columns: one character, `tab`, or `spaces` for any number of them.
@@ -59,9 +59,16 @@ pub struct Form {
     pub units_line: Option<bool>,
 }
 
-impl Default for Form {
+impl Default for TableForm {
     fn default() -> Self {
-        Form { skip: 0, delimiter: None, decimal: None, encoding: None, headings: true, units_line: None }
+        TableForm {
+            skip: 0,
+            delimiter: None,
+            decimal: None,
+            encoding: None,
+            headings: true,
+            units_line: None,
+        }
     }
 }
 
@@ -70,9 +77,9 @@ impl Default for Form {
 #[serde(deny_unknown_fields)]
 pub struct Even {
     /// Of the first row.
-    start: Option<Number>,
+    start: Option<SiNumber>,
     /// Between two rows.
-    interval: Number,
+    interval: SiNumber,
 }
 
 impl Even {
@@ -94,22 +101,22 @@ impl Even {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Mapped {
-    column: Place,
+    column: ColumnPlace,
     /// Its unit; none: the heading's, or SI.
     unit: Option<String>,
     /// -1 if it counts the other way.
     #[serde(default = "one")]
     sign: f64,
     /// What is added after unit and sign.
-    offset: Option<Number>,
+    offset: Option<SiNumber>,
     /// What the column measures, if not what the curve is.
     quantity: Option<Measures>,
     /// What a volt, or a strain of 1, stands for.
     sensitivity: Option<String>,
     /// By which its channel is late.
-    delay: Option<Number>,
+    delay: Option<SiNumber>,
     /// A column with the times of this one alone.
-    time: Option<Place>,
+    time: Option<ColumnPlace>,
 }
 
 fn one() -> f64 {
@@ -119,7 +126,7 @@ fn one() -> f64 {
 /// Where a column is.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
-enum Place {
+enum ColumnPlace {
     /// Counted from 1.
     Number(usize),
     Heading(String),
@@ -128,16 +135,16 @@ enum Place {
 /// A number in SI, or one with its unit.
 #[derive(Debug, Deserialize)]
 #[serde(untagged)]
-enum Number {
+enum SiNumber {
     Si(f64),
     WithUnit(String),
 }
 
-impl Number {
+impl SiNumber {
     fn in_si(&self, name: &str, unit: &str) -> Result<f64, String> {
         let value = match self {
-            Number::Si(value) => Ok(*value),
-            Number::WithUnit(text) => quantity_in(text, unit).map_err(|reason| format!("{name}: {reason}")),
+            SiNumber::Si(value) => Ok(*value),
+            SiNumber::WithUnit(text) => quantity_in(text, unit).map_err(|reason| format!("{name}: {reason}")),
         };
         value.and_then(
             |v| if v.is_finite() { Ok(v) } else { Err(format!("{name} is {v}, not a finite number")) },
@@ -160,7 +167,7 @@ impl Map {
     }
 
     /// The columns that it names in a table of this `layout`, those of the `known` curves, in the order of the file.
-    pub(super) fn named(&self, layout: &Layout, known: &[Curve]) -> Result<Vec<Column>, String> {
+    pub(super) fn named(&self, layout: &TextLayout, known: &[Curve]) -> Result<Vec<Column>, String> {
         let columns = self.columns.iter().map(|(name, mapped)| mapped.in_table(name, layout, known));
         let mut columns = columns.collect::<Result<Vec<Column>, String>>()?;
         columns.sort_by_key(|column| column.index);
@@ -172,8 +179,8 @@ impl Map {
     /// # Errors
     /// One sentence with the quantity.
     pub fn stated(&self, known: &[Quantity]) -> Result<[BTreeMap<String, f64>; 2], String> {
-        let of = |numbers: &BTreeMap<String, Number>| -> Result<BTreeMap<String, f64>, String> {
-            let number = |(name, number): (&String, &Number)| {
+        let of = |numbers: &BTreeMap<String, SiNumber>| -> Result<BTreeMap<String, f64>, String> {
+            let number = |(name, number): (&String, &SiNumber)| {
                 let quantity = known.iter().find(|quantity| quantity.name == name);
                 let quantity =
                     quantity.ok_or_else(|| format!("`{name}` is no quantity of this kind of scene"))?;
@@ -190,7 +197,7 @@ impl Map {
 }
 
 impl Mapped {
-    fn in_table(&self, name: &str, layout: &Layout, known: &[Curve]) -> Result<Column, String> {
+    fn in_table(&self, name: &str, layout: &TextLayout, known: &[Curve]) -> Result<Column, String> {
         let (name, si) = known_column(name, known)?;
         let at = |reason: String| format!("columns.{name}: {reason}");
         let index = self.column.index(&layout.headings).map_err(at)?;
@@ -204,7 +211,7 @@ impl Mapped {
         if self.sign.abs() != 1.0 {
             return Err(format!("columns.{name}.sign is {}, but it must be 1 or -1", self.sign));
         }
-        let number = |number: &Option<Number>, what: &str, unit: &str| {
+        let number = |number: &Option<SiNumber>, what: &str, unit: &str| {
             number.as_ref().map_or(Ok(0.0), |number| number.in_si(&format!("columns.{name}.{what}"), unit))
         };
         let clock = self.time.as_ref().map(|place| place.index(&layout.headings)).transpose().map_err(at)?;
@@ -236,11 +243,11 @@ fn sensitive(sensitivity: &str, unit: Option<&str>, si: &str) -> Result<f64, Str
     }
 }
 
-impl Place {
+impl ColumnPlace {
     fn heading(&self) -> Option<&str> {
         match self {
-            Place::Heading(heading) => Some(heading),
-            Place::Number(_) => None,
+            ColumnPlace::Heading(heading) => Some(heading),
+            ColumnPlace::Number(_) => None,
         }
     }
 
@@ -248,9 +255,9 @@ impl Place {
         let absent =
             |what: String| format!("there is no column {what} (there are: {})", headings.join(" | "));
         match self {
-            Place::Number(number @ 1..) if *number <= headings.len() => Ok(number - 1),
-            Place::Number(number) => Err(absent(number.to_string())),
-            Place::Heading(heading) => {
+            ColumnPlace::Number(number @ 1..) if *number <= headings.len() => Ok(number - 1),
+            ColumnPlace::Number(number) => Err(absent(number.to_string())),
+            ColumnPlace::Heading(heading) => {
                 let found = headings.iter().enumerate().filter(|(_, other)| other.trim() == heading.trim());
                 match found.map(|(place, _)| place).collect::<Vec<_>>()[..] {
                     [place] => Ok(place),
@@ -265,7 +272,7 @@ impl Place {
 }
 
 /// The text of a map that reads a file of this `layout` as it was read: its form, and its `columns` in SI units.
-pub(super) fn written(layout: &Layout, encoding: Option<&str>, columns: &[Column]) -> String {
+pub(super) fn written(layout: &TextLayout, encoding: Option<&str>, columns: &[Column]) -> String {
     let delimiter = match layout.delimiter {
         ' ' => "spaces".to_owned(),
         '\t' => "tab".to_owned(),

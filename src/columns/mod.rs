@@ -8,7 +8,7 @@ mod rows;
 mod text;
 
 pub use column::{Column, Measures, known_column, unit_in_si};
-pub use layout::Layout;
+pub use layout::TextLayout;
 pub use map::{Map, Provenance};
 pub use rows::{Columns, number};
 pub use text::decoded;
@@ -18,7 +18,7 @@ use rows::Clock;
 
 /// What a file says.
 #[derive(Debug, Clone)]
-pub struct Found {
+pub struct ReadTable {
     /// Its curves.
     pub columns: Columns,
     /// A map that says how it was read, to keep and to change.
@@ -32,9 +32,9 @@ pub struct Found {
 ///
 /// # Errors
 /// One sentence: the line, the column or the part of the map at fault.
-pub fn read(text: &str, map: &Map, known: &[Curve], fewest: usize) -> Result<Found, String> {
+pub fn read(text: &str, map: &Map, known: &[Curve], fewest: usize) -> Result<ReadTable, String> {
     let even = map.time.as_ref().map(map::Even::in_si).transpose()?;
-    let layout = Layout::of(text, &map.table, even.is_some(), column::is_unit)?;
+    let layout = TextLayout::of(text, &map.table, even.is_some(), column::is_unit)?;
     let all =
         if map.columns.is_empty() { column::by_heading(&layout, known)? } else { map.named(&layout, known)? };
     let times = all.iter().find(|column| column.name == "time");
@@ -57,11 +57,11 @@ pub fn read(text: &str, map: &Map, known: &[Curve], fewest: usize) -> Result<Fou
     let left_out = layout.headings.iter().enumerate().filter(|(k, _)| !is_read(*k));
     let left_out: Vec<&str> = left_out.map(|(_, heading)| heading.as_str()).collect();
     let how = in_words(&layout, &left_out);
-    Ok(Found { columns, map: map::written(&layout, map.table.encoding.as_deref(), &all), how })
+    Ok(ReadTable { columns, map: map::written(&layout, map.table.encoding.as_deref(), &all), how })
 }
 
 /// How a file of this `layout` was read, if that is not plain.
-fn in_words(layout: &Layout, left_out: &[&str]) -> Option<String> {
+fn in_words(layout: &TextLayout, left_out: &[&str]) -> Option<String> {
     let delimiter = match layout.delimiter {
         ' ' => "spaces".to_owned(),
         '\t' => "tabs".to_owned(),
@@ -81,10 +81,10 @@ fn in_words(layout: &Layout, left_out: &[&str]) -> Option<String> {
 }
 
 /// That no column is called as a curve, with a map to fill in.
-fn unknown_columns(layout: &Layout, known: &[Curve]) -> String {
+fn unknown_columns(layout: &TextLayout, known: &[Curve]) -> String {
     let names = column::names(known);
     format!(
-        "there is no signal except the time: no column is called as a curve (there are: {}); say in a map which is which, such as\n\n[columns]\ntime = {{ \
+        "there is no signal except the time: no column is called as a curve (there are: {}); name them in a map, such as\n\n[columns]\ntime = {{ \
          column = 1, unit = \"s\" }}\n{} = {{ column = 2, unit = \"V\", sensitivity = \"0.5 m/s/V\" }}\n\nwith the curves {}",
         layout.headings.join(" | "),
         names.get(1).unwrap_or(&"outer_velocity"),

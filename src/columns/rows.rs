@@ -1,7 +1,7 @@
 //! The numbers of a table of text.
 
 use super::column::{Column, Measures};
-use super::layout::{self, Layout};
+use super::layout::{self, TextLayout};
 use crate::curves::MonotoneCubic;
 
 /// Most rows: a second at 20 MHz.
@@ -41,12 +41,12 @@ pub(super) fn is_missing(cell: &str) -> bool {
 /// One sentence with line, column and value.
 pub(super) fn read(
     text: &str,
-    layout: &Layout,
+    layout: &TextLayout,
     clock: Clock,
     columns: &[&Column],
     fewest: usize,
 ) -> Result<Columns, String> {
-    let mut table = Table::new(layout, clock, columns);
+    let mut table = RowsSoFar::new(layout, clock, columns);
     let body = &text[layout.rows.clone()];
     if layout.delimiter == ' ' {
         let mut row = csv::StringRecord::new();
@@ -72,7 +72,7 @@ pub(super) fn read(
 }
 
 /// The rows so far.
-struct Table<'t> {
+struct RowsSoFar<'t> {
     decimal: char,
     clock: Clock<'t>,
     columns: &'t [&'t Column],
@@ -82,8 +82,8 @@ struct Table<'t> {
     own_times: Vec<Vec<f64>>,
 }
 
-impl<'t> Table<'t> {
-    fn new(layout: &Layout, clock: Clock<'t>, columns: &'t [&'t Column]) -> Self {
+impl<'t> RowsSoFar<'t> {
+    fn new(layout: &TextLayout, clock: Clock<'t>, columns: &'t [&'t Column]) -> Self {
         let empty = vec![Vec::new(); columns.len()];
         Self {
             decimal: layout.decimal,

@@ -1,10 +1,8 @@
 //! Error budget of a model: what each of its simplifications adds to its difference from the reference.
 
+pub use super::kinds::budget_of_results as of_results;
+
 use super::Verdict;
-use super::kinds;
-use crate::error::Result;
-use crate::result::{Outcome, Summary};
-use crate::scene::Scene;
 use serde::Serialize;
 
 /// The budget of one quantity. Values are in `unit`.
@@ -45,17 +43,6 @@ pub struct Part {
     pub value: f64,
     /// Uncertainty of `value`.
     pub uncertainty: f64,
-}
-
-/// The budget of the results `reduced` of `scene`; empty where none is made.
-///
-/// # Errors
-/// [`crate::Error::Solver`] if a model can't be set up or integrated, or a run was cut during a contact.
-pub fn of_results(scene: &Scene, reference: &Summary, reduced: &[Outcome]) -> Result<Vec<QuantityBudget>> {
-    match scene.general_impact() {
-        Ok(_) => kinds::general_impact::of_results(scene, reference, reduced),
-        Err(_) => kinds::plate_impact::of_results(scene, reference, reduced),
-    }
 }
 
 /// Root of the sum of squares: independent changes together.

@@ -31,7 +31,7 @@ pub use impacts::value_in;
 pub use imported::import;
 pub use input::{ComparisonInput, compare_scene};
 pub use integrity::{Check, contradictions};
-pub use kinds::plate_impact as plate_budget;
+pub use kinds::plate_budget;
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
 pub use reference_check::{ReferenceCheck, ReferenceRow};
 pub use series::{ORDER, STANDARD_ERRORS};

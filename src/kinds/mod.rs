@@ -12,7 +12,7 @@ pub mod seal_seat;
 
 pub use approach::Approach;
 pub use features::Feature;
-pub use general_impact::scene_of_body;
+pub use general_impact::{announce_set_ups, scene_of_body};
 pub use impactcheck_physics::kinds::*;
 pub use place::{MEASURES, Place};
 pub use plate_impact::closed_forms::{ClosedForm, Form};

@@ -1,7 +1,7 @@
 //! A record from a file: times and signals.
 
 use super::filter::SIGNALS;
-use crate::columns::{self, Found, Map};
+use crate::columns::{self, Map, ReadTable};
 use crate::error::{Error, Result};
 use crate::kinds::KINDS;
 use crate::result::Curve;
@@ -70,7 +70,7 @@ impl Record {
     fn parse(path: &Path, bytes: &[u8], map: &Map) -> std::result::Result<ReadRecord, String> {
         let known: Vec<Curve> = KINDS.iter().flat_map(|kind| kind.curves()).cloned().collect();
         let text = columns::decoded(bytes, map.table.encoding.as_deref())?;
-        let Found { columns, map, how } = columns::read(&text, map, &known, FEWEST)?;
+        let ReadTable { columns, map, how } = columns::read(&text, map, &known, FEWEST)?;
         // histories of this program have more curves than instruments show
         let columns::Columns { time, values, gaps, integrals } = columns;
         let measured = values.into_iter().filter(|(name, _)| SIGNALS.contains(name));
@@ -198,11 +198,11 @@ mod tests {
             (text("outer_displacement,outer_velocity,inner_velocity", rows()), "no column `time`"),
             (text("time,time,inner_velocity", rows()), "two columns are called `time`"),
             (text("a,b,c", rows()), "there is no column `time` (there are: a | b | c)"),
-            (text("time,b,c", rows()), "say in a map which is which"),
+            (text("time,b,c", rows()), "name them in a map"),
             (text(good, rows().take(5)), "has 5 samples"),
             (text(good, row(3, "3,inf,0")), "line 5: outer_velocity is `inf`"),
             (text(good, row(3, ",1,0")), "line 5: time is missing"),
-            (text(good, row(3, "2,0,0")), "line 5: time is"),
+            (text(good, row(3, "1,0,0")), "line 5: time is"),
             (text(good, row(3, "3,x,0")), "line 5: outer_velocity is `x`"),
             (String::new(), "no columns of numbers"),
         ] {

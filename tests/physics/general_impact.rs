@@ -241,11 +241,14 @@ fn scenes_that_contradict_themselves_are_refused_in_a_sentence() {
             format!("{OUTER}{RIGID}[fluid]\nviscosity = 1e-3\ndensity = 1e3\nminimum_gap = 1e-6\n"),
             "`fluid` does not belong to kind `impact`",
         ),
-        (format!("{OUTER}{RIGID}[reference]\n"), "`reference` does not belong to kind `impact`"),
+        (
+            format!("{OUTER}{RIGID}[reference]\nelements_per_contact_radius = 1\n"),
+            "`reference.elements_per_contact_radius` is 1",
+        ),
         (format!("{OUTER}{RIGID}[reduced]\nmodel = \"A\"\n"), "`reduced.model` is \"A\""),
         (format!("{OUTER}{RIGID}[tolerances.A]\nefficiency = 0.1\n"), "`A` is not a reduced model"),
         (format!("{OUTER}{RIGID}[tolerances.C]\nplate_velocity_rms = 0.1\n"), "not a quantity that can have"),
-        (format!("{OUTER}[body]\nfile = \"casing.step\"\n"), "`body.material` is missing"),
+        (format!("{OUTER}[body]\nfile = \"casing.step\"\n"), "the material is missing in [body]"),
         (format!("{OUTER}[body]\nfile = \"none.step\"\nmaterial = \"steel\"\n"), "`outer.at` is missing"),
         (
             format!("{OUTER}at = \"top\"\n[body]\nfile = \"none.step\"\nmaterial = \"steel\"\n"),

@@ -272,17 +272,14 @@ impl<'a> Checker<'a> {
 
     fn materials(&mut self, place: &Place, value: &Spanned<DeValue>, names: &DeTable) -> Option<Checked> {
         if names.is_empty() {
-            let (_, help) = needed(&Kind::Materials, place.path);
+            let help = needed(&Kind::Materials, "").1;
             return self.fault(place, value, "but it names no group", "empty", help);
         }
         let mut found = Values::new();
         for (key, name) in names {
             let path = place.key(key.get_ref());
-            let place = Place { path: &path, span: key.span() };
-            // reports every unknown name
-            if let Some(material) = self.value(&place, name, &BODY_MATERIAL) {
-                found.insert(key.get_ref().to_string(), material);
-            }
+            let material = self.value(&Place { path: &path, span: key.span() }, name, &BODY_MATERIAL);
+            found.extend(material.map(|material| (key.get_ref().to_string(), material)));
         }
         Some(Checked::Table(found))
     }

@@ -2,10 +2,11 @@
 
 mod features;
 mod from_file;
-pub mod set_up;
+mod set_up;
 
 pub use from_file::scene_of_body;
 pub use impactcheck_physics::kinds::general_impact::*;
+pub use set_up::announce_set_ups;
 
 use super::{ClosedForm, Feature, Form, Starter, Use};
 use crate::error::Result;

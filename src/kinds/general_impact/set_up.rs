@@ -1,5 +1,6 @@
 //! What the set-up of an elastic body takes, stated before it begins.
 
+use crate::kinds::general_impact::set_announcer;
 use crate::{Error, Result};
 use std::path::Path;
 
@@ -15,11 +16,16 @@ const NOTABLE: f64 = 30_000.0;
 /// Share of the available memory that may be used.
 const SHARE: f64 = 0.9;
 
+/// From now on `note` gets a line about each longer set-up of a body, before it begins; one that needs more memory than there is, is refused.
+pub fn announce_set_ups(note: impl Fn(String) + Send + Sync + 'static) {
+    set_announcer(Box::new(move |unknowns| announce(unknowns, &note)));
+}
+
 /// Gives `note` a line about the set-up of a body of so many unknowns.
 ///
 /// # Errors
 /// [`Error::Scene`] if the machine's memory does not suffice.
-pub fn announce(unknowns: usize, note: impl Fn(String)) -> Result<()> {
+fn announce(unknowns: usize, note: impl Fn(String)) -> Result<()> {
     announce_with(unknowns, available(Path::new("/")), note)
 }
 
