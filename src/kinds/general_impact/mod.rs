@@ -73,3 +73,30 @@ impl super::Kind for Kind {
 fn yields(setup: &GeneralImpact) -> bool {
     setup.materials().iter().any(|material| material.plasticity().is_some())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinds;
+
+    fn taken(changed: &[(&str, &str)]) -> bool {
+        let text = include_str!("../../../examples/bodies/bracket.toml").to_owned();
+        let text = changed.iter().fold(text, |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replace(from, to)
+        });
+        let scene = Scene::parse("examples/bodies/bracket.toml", &text).expect("valid");
+        kinds::of(&scene).calculix_takes(&scene)
+    }
+
+    /// As the solver refuses: nothing else is computed in its name.
+    #[test]
+    fn calculix_takes_elastic_spheres_on_a_body_only() {
+        assert!(taken(&[]));
+        assert!(!taken(&[("[reduced]", "[reference]\nrigid = \"inner\"\n\n[reduced]")]));
+        assert!(!taken(&[("[reduced]", "[reference]\nelement_order = 1\n\n[reduced]")]));
+        assert!(!taken(&[("[outer]", "damping_ratio = 0.01\n\n[outer]")]));
+        let relaxing = "relaxation = [{ ratio = 0.1, time = \"1 ms\" }]\n\n[body]";
+        assert!(!taken(&[("[body]", relaxing)]));
+    }
+}
