@@ -161,6 +161,10 @@ def parse_scene(document: Any) -> Scene:
         SceneError: a field is missing, unknown or of another type, or this solver does not cover
             the scene.
     """
+    if isinstance(document, dict) and "materials" in (document.get("body") or {}):
+        raise SceneError(
+            "body.materials is given; the reference takes a body of one material: give body.material"
+        )
     scene = decode(Scene, document)
     for refused, sentence in _refusals(scene):
         if refused:
