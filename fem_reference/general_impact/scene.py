@@ -163,7 +163,7 @@ def parse_scene(document: Any) -> Scene:
     """
     if isinstance(document, dict) and "materials" in (document.get("body") or {}):
         raise SceneError(
-            "body.materials is given; the reference takes a body of one material: give body.material"
+            "body.materials is given; the reference takes one material: give body.material"
         )
     scene = decode(Scene, document)
     for refused, sentence in _refusals(scene):

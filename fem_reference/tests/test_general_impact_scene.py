@@ -65,7 +65,7 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"wall": WALL, "series": {"impacts": 2}}, "series is given"),
     ({"plate": PLATE | {"damping_ratio": 0.01}}, "plate.damping_ratio is 0.01"),
     ({"body": BODY | {"damping_ratio": 0.02}}, "body.damping_ratio is 0.02"),
-    ({"body": BODY | {"materials": {"left": STEEL}}}, "a body of one material"),
+    ({"body": BODY | {"materials": {"left": STEEL}}}, "the reference takes one material"),
     ({"inner": STILL | {"speed": -0.5}}, "approach each other at 0 m/s"),
     (
         {"wall": {"material": STEEL | {"yield_strength": 1e9, "hardening": 0.0}}},
