@@ -25,6 +25,9 @@ pub struct Map {
     quantities: BTreeMap<String, SiNumber>,
     /// Half widths of their 95 % bands.
     uncertainty: BTreeMap<String, SiNumber>,
+    /// Its own text.
+    #[serde(skip)]
+    pub(super) text: String,
 }
 
 /// Who made a result with what.
@@ -158,7 +161,8 @@ impl Map {
     /// # Errors
     /// What TOML says.
     pub fn parse(text: &str) -> Result<Self, String> {
-        toml::from_str(text).map_err(|error| error.to_string())
+        let map: Self = toml::from_str(text).map_err(|error| error.to_string())?;
+        Ok(Self { text: text.to_owned(), ..map })
     }
 
     /// The headings that columns are looked for by.

@@ -57,7 +57,12 @@ pub fn read(text: &str, map: &Map, known: &[Curve], fewest: usize) -> Result<Rea
     let left_out = layout.headings.iter().enumerate().filter(|(k, _)| !is_read(*k));
     let left_out: Vec<&str> = left_out.map(|(_, heading)| heading.as_str()).collect();
     let how = in_words(&layout, &left_out);
-    Ok(ReadTable { columns, map: map::written(&layout, map.table.encoding.as_deref(), &all), how })
+    // what a user has stated of the columns stays as it is
+    let map = match map.columns.is_empty() {
+        true => map::written(&layout, map.table.encoding.as_deref(), &all),
+        false => map.text.clone(),
+    };
+    Ok(ReadTable { columns, map, how })
 }
 
 /// How a file of this `layout` was read, if that is not plain.

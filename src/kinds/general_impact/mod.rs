@@ -93,7 +93,6 @@ mod tests {
     fn calculix_takes_elastic_spheres_on_a_body_only() {
         assert!(taken(&[]));
         assert!(!taken(&[("[outer]", "damping_ratio = 0.01\n\n[outer]")]));
-        let relaxing = "relaxation = [{ ratio = 0.1, time = \"1 ms\" }]\n\n[body]";
-        assert!(!taken(&[("[body]", relaxing)]));
+        assert!(!taken(&[("speed    = \"500 mm/s\"", "speed    = \"500 mm/s\"\nangle    = \"5 deg\"")]));
     }
 }
