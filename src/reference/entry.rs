@@ -2,7 +2,7 @@
 
 use super::{CurveBands, Resolution, history_file};
 use crate::kinds;
-use crate::result::{Outcome, SCHEMA_VERSION, Source, Summary};
+use crate::result::{Curve, Outcome, SCHEMA_VERSION, Source, Summary};
 use crate::scene::Scene;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -78,7 +78,8 @@ pub(super) fn load(scene: &Scene, folder: &Path, origin: Origin) -> Result<Store
     let mut summary = Summary::read(kind.quantities(), &text(folder, SUMMARY)?)
         .map_err(|e| damage(SUMMARY, format!("is not what is expected: {e}")))?;
     let provenance: Value = read_json(folder, PROVENANCE)?;
-    let (history, bands) = history_file::read(kind.curves(), &folder.join(HISTORY), is_imported)
+    let curves: Vec<Curve> = kind.curves().iter().filter(|c| kind.has(scene, c.name)).cloned().collect();
+    let (history, bands) = history_file::read(&curves, &folder.join(HISTORY), is_imported)
         .map_err(|reason| damage(HISTORY, reason))?;
     if summary.schema_version != SCHEMA_VERSION {
         let reason =
