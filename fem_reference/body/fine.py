@@ -12,13 +12,22 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from ..common.errors import SceneError, SolverError
-from ..solid.mesh import MINIMUM_QUALITY, TetMesh, edge_lengths, qualities, surface, tetrahedra
+from ..solid.bisection import bisected
+from ..solid.mesh import (
+    MINIMUM_QUALITY,
+    TetMesh,
+    check_elements,
+    edge_lengths,
+    qualities,
+    surface,
+    tetrahedra,
+)
 from .body import Body, body_of, fixed_mask
 from .cad import DELAUNAY, FRONTAL, HXT, StruckPart, largest_element, struck_part
 from .contact import described, located
 from .files import CAD, checked, gmsh_session, read_mesh
 from .part import UNIT
-from .remesh import VOLUME_ERROR, classify, moved_nodes
+from .remesh import moved_nodes
 from .scene import BodyScene, place
 from .sizing import (
     WALL_SHARE,
@@ -32,8 +41,8 @@ from .sizing import (
 )
 from .tets import volume
 
-DELAUNAY_SURFACE = 5
-"""gmsh's algorithm for surfaces that came as meshes; the frontal one takes minutes there."""
+LONGEST = 1.4
+"""Longest edge of a tetrahedron over its size."""
 TRIANGLE3, TETRAHEDRON4 = 2, 4
 """gmsh's numbers of elements."""
 EXACT_ZONES = 3.0
@@ -155,29 +164,8 @@ def _of_mesh(scene: BodyScene, path: Path, order: int, fineness: Fineness) -> Fi
         stated = described(body, point, distance, None)
         curvature = 0.5 * sum(stated["curvatures"])
         strikes[name] = Strike(np.array(stated["point"]), np.array(stated["normal"]), curvature)
-    longest = float(np.ptp(body.points, axis=0).max())
-    with gmsh_session():
-        try:
-            classify(body.skin, 1.0 / longest)
-            points = {name: _point(each, longest) for name, each in strikes.items()}
-        except Exception as error:
-            raise SolverError(
-                f"{path.name} cannot be meshed again, as its reference needs ({error}); give the "
-                "CAD part"
-            ) from error
-        found = walls(body.skin)
-        scaled = Walls(found.places / longest, found.thickness / longest, found.areas / longest**2)
-        sizes = _far(scaled, fineness, longest, None)
-        contacts = _at_contacts(fineness, points, strikes, longest)
-        # gmsh's curvature of a discrete surface is noise
-        flat = replace(fineness, per_circle=0.0)
-        mesh, _ = _unflat(path.name, order, longest, sizes, contacts, [], flat, DELAUNAY_SURFACE)
+    mesh = _refined(body, strikes, fineness, order)
     exact = volume(body.points, body.cells)
-    if abs(mesh.volume() - exact) > VOLUME_ERROR * exact:
-        raise SolverError(
-            f"{path.name} meshed again has the volume {mesh.volume():.6g} m^3 instead of "
-            f"{exact:.6g}; give the CAD part or a finer mesh"
-        )
     made = Body(mesh.points, tetrahedra("body", *_corners(mesh), 2).cells, body.groups)
     nodes = np.flatnonzero(moved_nodes(body, fixed, made)[: mesh.points.shape[0]])
     places = _on_skin(body, mesh, strikes, fineness)
@@ -187,15 +175,32 @@ def _of_mesh(scene: BodyScene, path: Path, order: int, fineness: Fineness) -> Fi
 _NONE = np.zeros(0, dtype=np.int64)
 
 
+def _refined(body: Body, strikes: dict[str, Strike], fineness: Fineness, order: int) -> TetMesh:
+    """The mesh that was given, with straight edges, cut where its elements are too large."""
+    found = walls(body.skin)
+    far = _far(found, fineness, 1.0, None)
+
+    def longest(places: Floats) -> Floats:
+        sizes = far.at(places)
+        for name, (size, zone) in fineness.contacts.items():
+            away = np.linalg.norm(places - strikes[name].point, axis=1)
+            sizes = np.minimum(sizes, size + fineness.growth * np.maximum(away - zone, 0.0))
+        return LONGEST * sizes
+
+    def on_skin(places: Floats) -> Floats:
+        if not body.skin.curved.any():
+            return places
+        return np.array([body.skin.nearest(place).place for place in places])
+
+    used, number = np.unique(body.cells[:, :4], return_inverse=True)
+    points, corners = bisected(body.points[used], number.reshape(-1, 4), longest, on_skin)
+    mesh = tetrahedra("body", points, corners, order)
+    check_elements(mesh)
+    return mesh
+
+
 def _corners(mesh: TetMesh) -> tuple[Floats, Ints]:
     return mesh.points[: int(mesh.corners.max()) + 1], mesh.corners
-
-
-def _point(strike: Strike, unit: float) -> int:
-    """Tag of a point of gmsh's model at a contact, in no element."""
-    point = int(gmsh.model.geo.addPoint(*(strike.point / unit)))
-    gmsh.model.geo.synchronize()
-    return point
 
 
 def _far(found: Walls, fineness: Fineness, unit: float, largest: float | None) -> Sizes:
@@ -223,7 +228,6 @@ def _unflat(
     contacts: list[ContactSize],
     edges: list[tuple[int, float]],
     fineness: Fineness,
-    on_surface: int = FRONTAL,
 ) -> tuple[TetMesh, Ints]:
     """The mesh of gmsh's solid without flat elements, and the node of each of gmsh's tags.
 
@@ -233,7 +237,7 @@ def _unflat(
     reason, best = "", 0.0
     for smaller, algorithm in product(SMALLER, (DELAUNAY, HXT)):
         gmsh.model.mesh.clear()
-        for key, value in (("Algorithm", on_surface), ("Algorithm3D", algorithm), ("Optimize", 1)):
+        for key, value in (("Algorithm", FRONTAL), ("Algorithm3D", algorithm), ("Optimize", 1)):
             gmsh.option.setNumber(f"Mesh.{key}", value)
         gmsh.option.setNumber("Mesh.ElementOrder", 1)
         with tempfile.TemporaryDirectory() as folder:
