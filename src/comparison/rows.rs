@@ -20,7 +20,8 @@ pub(super) fn rows(
     let mut rows = quantities(kind, reference, c, tolerances);
     rows.extend(impacts::rows(m, c, tolerances));
     rows.extend(landing::row([flight, c.flight.as_ref()], tolerances));
-    rows.extend(curve_distances(kind.curves(), [reference, reduced], aligned, tolerances));
+    let curves: Vec<Curve> = kind.curves().iter().filter(|c| kind.has(scene, c.name)).cloned().collect();
+    rows.extend(curve_distances(&curves, [reference, reduced], aligned, tolerances));
     rows.extend(residuals(m, c, tolerances));
     rows
 }
