@@ -41,8 +41,7 @@ impl super::Kind for Kind {
             .all(|shape| matches!(shape, Shape::Sphere { .. }));
         let elastic = setup.materials().iter().all(|material| material.relaxation.is_empty());
         let single = setup.series.is_none() && setup.outer.is_centred() && body.damping_ratio == 0.0;
-        let quadratic = scene.reference.element_order.is_none_or(|order| order == 2);
-        spheres && elastic && !yields(setup) && single && quadratic && scene.reference.rigid.is_none()
+        spheres && elastic && !yields(setup) && single
     }
 
     fn closed_forms(&self, scene: &Scene) -> Result<Vec<ClosedForm>> {
@@ -93,10 +92,9 @@ mod tests {
     #[test]
     fn calculix_takes_elastic_spheres_on_a_body_only() {
         assert!(taken(&[]));
-        assert!(!taken(&[("[reduced]", "[reference]\nrigid = \"inner\"\n\n[reduced]")]));
-        assert!(!taken(&[("[reduced]", "[reference]\nelement_order = 1\n\n[reduced]")]));
         assert!(!taken(&[("[outer]", "damping_ratio = 0.01\n\n[outer]")]));
-        let relaxing = "relaxation = [{ ratio = 0.1, time = \"1 ms\" }]\n\n[body]";
-        assert!(!taken(&[("[body]", relaxing)]));
+        assert!(!taken(&[("[body]", "yield_strength = \"1 GPa\"\nhardening = \"0 Pa\"\n\n[body]")]));
+        let compact = "kind = \"compact\"\nmass = \"2 g\"\ntip_radius = \"4 mm\"\n";
+        assert!(!taken(&[("kind     = \"sphere\"\nradius   = \"4 mm\"\n", compact)]));
     }
 }
