@@ -211,17 +211,17 @@ def test_a_small_impact_keeps_its_balances_and_agrees_with_the_explicit_solver(
 
     file = write_cad(tmp_path / "block.step", cuboid(6, 6, 4))
     scene = parse_scene(document(file, [[0.003, 0.003, 0.004]], [[0.003, 0.003, 0.0]]))
+    monkeypatch.setattr(calculix, "STEPS", 100.0)
     found = {}
-    for by, factor in ((calculix, 0.4), (solve, 0.5)):
+    for by in (calculix, solve):
         settings = Settings(0.9, tmp_path / by.__name__, 0.0, "test")
-        solution = by.compute(scene, file, factor, settings, MPI.COMM_SELF, lambda *_: None)
+        solution = by.compute(scene, file, 0.3, settings, MPI.COMM_SELF, lambda *_: None)
         found[by] = quantities(scene, solution)
         run = solution.run
         assert run.momentum_residual < 2e-3
         assert run.energy_residual < 5e-3
         assert not run.in_contact_at_end
         assert run.contacts[0].count == 1
-    # so few elements in a contact radius are still too stiff
-    within = {"outer_force_peak": 0.05, "outer_contact_end": 0.03, "outer_restitution": 0.02}
+    within = {"outer_force_peak": 0.02, "outer_contact_end": 0.02, "outer_restitution": 0.003}
     for name, share in within.items():
         assert found[calculix][name] == pytest.approx(found[solve][name], rel=share), name
