@@ -27,7 +27,7 @@ LARGEST = 0.25
 SLOPE, STEEPEST = 0.2, 0.6
 """Growth of the element size per distance from the contact, at factor 1, and at any: above, gmsh
 takes an element that reaches to the contact for small enough."""
-WALLS = 0.3
+WALLS = 0.22
 """Largest element over the thickness of a wall, at factor 1."""
 PER_WAVE = {1: 24.0, 2: 8.0}
 """Elements per shortest wavelength, by order."""

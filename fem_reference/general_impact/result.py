@@ -16,7 +16,7 @@ from .estimate import Sizes
 from .run import Run
 from .scene import Scene
 
-RATIO = 0.84
+RATIO = 0.88
 """Elements of a mesh over those of the next finer one, in every direction."""
 MINOR = 0.05
 """Of the impact: what passes on less needs not be known to more digits than the impact itself."""

@@ -4,6 +4,7 @@ use super::Context;
 use crate::columns::Map;
 use crate::error::{Error, Result};
 use crate::measured::{ReadRecord, Record};
+use crate::reference::record_source;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -24,7 +25,7 @@ impl RecordMap {
     /// Those of map and records; [`Error::Io`] if the map can't be written.
     pub fn records(&self, context: &Context, files: &[PathBuf]) -> Result<Vec<Record>> {
         let map = self.map.as_deref().map_or_else(|| Ok(Map::default()), read_map)?;
-        let read = files.iter().map(|file| Record::read(file, &map)).collect::<Result<Vec<ReadRecord>>>()?;
+        let read = files.iter().map(|file| read_record(file, &map)).collect::<Result<Vec<ReadRecord>>>()?;
         for ReadRecord { record, how, .. } in &read {
             if let Some(how) = how {
                 context.note(format_args!("{}: {how}", record.file.display()));
@@ -35,6 +36,14 @@ impl RecordMap {
         }
         Ok(read.into_iter().map(|read| read.record).collect())
     }
+}
+
+fn read_record(file: &Path, map: &Map) -> Result<ReadRecord> {
+    let bytes = std::fs::read(file).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => Error::Usage(format!("there is no measured file {}", file.display())),
+        _ => Error::io("reading", file, e),
+    })?;
+    Record::of(file, &record_source(file, &bytes, map)?, map)
 }
 
 fn read_map(path: &Path) -> Result<Map> {

@@ -1,6 +1,5 @@
 //! What a column of a file is: the time or a curve, or what a curve is derived from.
 
-use super::layout::TextLayout;
 use crate::result::Curve;
 use crate::scene::{quantity_in, suggestion};
 use serde::Deserialize;
@@ -135,8 +134,17 @@ pub struct Column {
     pub clock: Option<usize>,
 }
 
-impl TextLayout {
-    /// The unit of a column: in a line of units, or in its heading.
+/// What a file says of its columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Titles {
+    /// Name of each column; its number, counted from 1, where there is none.
+    pub headings: Vec<String>,
+    /// Unit of each column, where it stands apart from the heading; else empty.
+    pub units: Vec<String>,
+}
+
+impl Titles {
+    /// The unit of a column: as it stands apart, or in its heading.
     pub(super) fn unit_of(&self, index: usize) -> Option<&str> {
         let stated = self.units.get(index).filter(|unit| !unit.is_empty());
         stated.map(String::as_str).or_else(|| split_heading(self.headings.get(index)?).ok()?.1)
@@ -178,10 +186,10 @@ pub fn unit_in_si(unit: &str, si: &str) -> Result<f64, String> {
     quantity_in(&format!("1 {}", spelled(unit)), si)
 }
 
-/// The columns that the headings of a `layout` name: the time and `known` curves. Others are left out, but for what looks like a slip.
-pub(super) fn by_heading(layout: &TextLayout, known: &[Curve]) -> Result<Vec<Column>, String> {
+/// The columns that the headings among the `titles` name: the time and `known` curves. Others are left out, but for what looks like a slip.
+pub(super) fn by_heading(titles: &Titles, known: &[Curve]) -> Result<Vec<Column>, String> {
     let mut found: Vec<Column> = Vec::new();
-    for (index, heading) in layout.headings.iter().enumerate() {
+    for (index, heading) in titles.headings.iter().enumerate() {
         let (name, _) = split_heading(heading)?;
         let lower = name.to_lowercase();
         let is_time = TIMES.contains(&lower.as_str());
@@ -191,7 +199,7 @@ pub(super) fn by_heading(layout: &TextLayout, known: &[Curve]) -> Result<Vec<Col
             continue;
         };
         let (name, si) = known_column(name, known)?;
-        let unit = layout.unit_of(index);
+        let unit = titles.unit_of(index);
         let factor = unit.map_or(Ok(1.0), |unit| unit_in_si(unit, measures.unit(si)));
         let factor = factor.map_err(|reason| format!("column `{heading}`: {reason}"))?;
         if found.iter().any(|other| other.name == name) {

@@ -1,5 +1,6 @@
 //! Where the numbers of a text begin, what separates them, and the headings above them.
 
+use super::column::Titles;
 use super::map::TableForm;
 use super::rows::number;
 use std::ops::Range;
@@ -20,10 +21,8 @@ pub struct TextLayout {
     pub delimiter: char,
     /// Decimal sign.
     pub decimal: char,
-    /// Name of each column; its number, counted from 1, where there is none.
-    pub headings: Vec<String>,
-    /// Unit of each column from a line of units; empty where there is none.
-    pub units: Vec<String>,
+    /// Above the columns; the units are those of a line of units.
+    pub titles: Titles,
     /// Lines before the first number.
     pub lines_before: usize,
     /// Where the lines with numbers are, in bytes.
@@ -114,8 +113,10 @@ impl TextLayout {
         Ok(Self {
             delimiter,
             decimal,
-            headings: (0..width).map(|k| name(k).unwrap_or_else(|| (k + 1).to_string())).collect(),
-            units: (0..width).map(|k| units.get(k).cloned().unwrap_or_default()).collect(),
+            titles: Titles {
+                headings: (0..width).map(|k| name(k).unwrap_or_else(|| (k + 1).to_string())).collect(),
+                units: (0..width).map(|k| units.get(k).cloned().unwrap_or_default()).collect(),
+            },
             lines_before: first,
             rows: lines[first].0..text.len(),
         })
@@ -261,8 +262,8 @@ mod tests {
         ] {
             let found = layout(text);
             assert_eq!((found.delimiter, found.decimal), (delimiter, decimal), "{text}");
-            assert_eq!(found.headings.join(" "), headings, "{text}");
-            assert_eq!(found.units.join(" ").trim(), units, "{text}");
+            assert_eq!(found.titles.headings.join(" "), headings, "{text}");
+            assert_eq!(found.titles.units.join(" ").trim(), units, "{text}");
             assert_eq!(found.lines_before, before, "{text}");
         }
     }
@@ -274,7 +275,7 @@ mod tests {
             "Record Length,4,,-0.2,1\nSample Interval,0.1,,-0.1,2\n,,,0.0,3\n,,,0.1,4\n,,,0.2,4\n,,,0.3,4\n";
         let found = layout(text);
         assert_eq!(found.lines_before, 0);
-        assert_eq!(found.headings[3..], ["4", "5"]);
+        assert_eq!(found.titles.headings[3..], ["4", "5"]);
     }
 
     #[test]

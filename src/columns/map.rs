@@ -1,7 +1,7 @@
 //! A map: how a file is to be read. Which column is which curve, in which unit and sign, and what is known of who made it. Everything in it may
 //! be missing: what is not said is inferred from the file.
 
-use super::column::{Column, Measures, known_column, unit_in_si};
+use super::column::{Column, Measures, Titles, known_column, unit_in_si};
 use super::layout::TextLayout;
 use crate::result::{Curve, Quantity};
 use crate::scene::quantity_in;
@@ -165,14 +165,19 @@ impl Map {
         Ok(Self { text: text.to_owned(), ..map })
     }
 
+    /// Start and interval of even times, s, if it states them.
+    pub(super) fn even(&self) -> Result<Option<[f64; 2]>, String> {
+        self.time.as_ref().map(Even::in_si).transpose()
+    }
+
     /// The headings that columns are looked for by.
     pub fn headings(&self) -> Vec<&str> {
         self.columns.values().filter_map(|mapped| mapped.column.heading()).collect()
     }
 
-    /// The columns that it names in a table of this `layout`, those of the `known` curves, in the order of the file.
-    pub(super) fn named(&self, layout: &TextLayout, known: &[Curve]) -> Result<Vec<Column>, String> {
-        let columns = self.columns.iter().map(|(name, mapped)| mapped.in_table(name, layout, known));
+    /// The columns that it names in a table with these `titles`, those of the `known` curves, in the order of the file.
+    pub(super) fn named(&self, titles: &Titles, known: &[Curve]) -> Result<Vec<Column>, String> {
+        let columns = self.columns.iter().map(|(name, mapped)| mapped.in_table(name, titles, known));
         let mut columns = columns.collect::<Result<Vec<Column>, String>>()?;
         columns.sort_by_key(|column| column.index);
         Ok(columns)
@@ -201,13 +206,13 @@ impl Map {
 }
 
 impl Mapped {
-    fn in_table(&self, name: &str, layout: &TextLayout, known: &[Curve]) -> Result<Column, String> {
+    fn in_table(&self, name: &str, titles: &Titles, known: &[Curve]) -> Result<Column, String> {
         let (name, si) = known_column(name, known)?;
         let at = |reason: String| format!("columns.{name}: {reason}");
-        let index = self.column.index(&layout.headings).map_err(at)?;
+        let index = self.column.index(&titles.headings).map_err(at)?;
         let measures = self.quantity.unwrap_or_else(|| Measures::of(name));
         measures.require_for(name).map_err(at)?;
-        let unit = self.unit.as_deref().or_else(|| layout.unit_of(index));
+        let unit = self.unit.as_deref().or_else(|| titles.unit_of(index));
         let factor = match &self.sensitivity {
             None => unit.map_or(Ok(1.0), |unit| unit_in_si(unit, measures.unit(si))),
             Some(sensitivity) => sensitive(sensitivity, unit, measures.unit(si)),
@@ -218,7 +223,7 @@ impl Mapped {
         let number = |number: &Option<SiNumber>, what: &str, unit: &str| {
             number.as_ref().map_or(Ok(0.0), |number| number.in_si(&format!("columns.{name}.{what}"), unit))
         };
-        let clock = self.time.as_ref().map(|place| place.index(&layout.headings)).transpose().map_err(at)?;
+        let clock = self.time.as_ref().map(|place| place.index(&titles.headings)).transpose().map_err(at)?;
         Ok(Column {
             name,
             index,
@@ -275,8 +280,23 @@ impl ColumnPlace {
     }
 }
 
-/// The text of a map that reads a file of this `layout` as it was read: its form, and its `columns` in SI units.
-pub(super) fn written(layout: &TextLayout, encoding: Option<&str>, columns: &[Column]) -> String {
+/// The text of a map that reads a file as it was read: with the form of its text, and its `columns` in SI units.
+pub(super) fn written(form: &str, titles: &Titles, columns: &[Column]) -> String {
+    let mut text = format!("{form}[columns]\n");
+    for column in columns {
+        let measured = match column.measures == Measures::of(column.name) {
+            true => String::new(),
+            false => format!(", quantity = {:?}", column.measures.name()),
+        };
+        // a sign and a size together are what unit and sign say
+        let unit = titles.unit_of(column.index).map(|unit| format!(", unit = {unit:?}")).unwrap_or_default();
+        let _ = writeln!(text, "{} = {{ column = {}{unit}{measured} }}", column.name, column.index + 1);
+    }
+    text
+}
+
+/// The table of a map that says how text of this `layout` is written.
+pub(super) fn written_form(layout: &TextLayout, encoding: Option<&str>) -> String {
     let delimiter = match layout.delimiter {
         ' ' => "spaces".to_owned(),
         '\t' => "tab".to_owned(),
@@ -287,15 +307,5 @@ pub(super) fn written(layout: &TextLayout, encoding: Option<&str>, columns: &[Co
     if let Some(encoding) = encoding {
         let _ = writeln!(text, "encoding  = {encoding:?}");
     }
-    text += "\n[columns]\n";
-    for column in columns {
-        let measured = match column.measures == Measures::of(column.name) {
-            true => String::new(),
-            false => format!(", quantity = {:?}", column.measures.name()),
-        };
-        // a sign and a size together are what unit and sign say
-        let unit = layout.unit_of(column.index).map(|unit| format!(", unit = {unit:?}")).unwrap_or_default();
-        let _ = writeln!(text, "{} = {{ column = {}{unit}{measured} }}", column.name, column.index + 1);
-    }
-    text
+    text + "\n"
 }

@@ -1,20 +1,25 @@
 //! Curves from files that others write: records of instruments, results of other programs. One reader for all, which infers what a map does not
 //! say: encoding, delimiter, decimal sign, lines before the numbers, headings and units.
 
+mod channels;
 mod column;
 mod layout;
 mod map;
 mod rows;
+mod series;
 mod text;
 
-pub use column::{Column, Measures, known_column, unit_in_si};
+pub use channels::{Channel, ChannelClock, binary_format};
+pub use column::{Column, Measures, Titles, known_column, unit_in_si};
 pub use layout::TextLayout;
 pub use map::{Map, Provenance};
-pub use rows::{Columns, number};
+pub use rows::number;
+pub use series::Columns;
 pub use text::decoded;
 
 use crate::result::Curve;
 use rows::Clock;
+use std::borrow::Cow;
 
 /// What a file says.
 #[derive(Debug, Clone)]
@@ -27,46 +32,101 @@ pub struct ReadTable {
     pub how: Option<String>,
 }
 
-/// Reads the curves of the table in `text`, which `map` describes as far as it says anything; `known` are the curves there are, and it needs
-/// `fewest` samples at least.
+/// What a file consists of.
+#[derive(Debug, Clone)]
+pub enum Source<'b> {
+    /// A table of text.
+    Text(Cow<'b, str>),
+    /// Channels of a binary format.
+    Channels(Vec<Channel>),
+}
+
+impl Source<'_> {
+    /// Reads the curves, which `map` describes as far as it says anything; `known` are the curves there are, and it needs `fewest` samples at
+    /// least.
+    ///
+    /// # Errors
+    /// One sentence: the line, the column, the channel or the part of the map at fault.
+    pub fn read(&self, map: &Map, known: &[Curve], fewest: usize) -> Result<ReadTable, String> {
+        match self {
+            Source::Text(text) => read(text, map, known, fewest),
+            Source::Channels(channels) => read_channels(channels, map, known, fewest),
+        }
+    }
+}
+
+/// Reads the curves of the table in `text`; see [`Source::read`].
 ///
 /// # Errors
-/// One sentence: the line, the column or the part of the map at fault.
+/// As there.
 pub fn read(text: &str, map: &Map, known: &[Curve], fewest: usize) -> Result<ReadTable, String> {
-    let even = map.time.as_ref().map(map::Even::in_si).transpose()?;
+    let even = map.even()?;
     let layout = TextLayout::of(text, &map.table, even.is_some(), column::is_unit)?;
-    let all =
-        if map.columns.is_empty() { column::by_heading(&layout, known)? } else { map.named(&layout, known)? };
+    let all = chosen(&layout.titles, map, known)?;
     let times = all.iter().find(|column| column.name == "time");
     let clock = match (even, times) {
         (Some(even), _) => Clock::Even(even),
         (None, Some(times)) => Clock::Column(times),
-        (None, None) => {
-            return Err(format!(
-                "there is no column `time` (there are: {}); name it in a map, or start and interval under [time]",
-                layout.headings.join(" | ")
-            ));
-        }
+        (None, None) => return Err(no_time(&layout.titles)),
     };
-    let signals: Vec<&Column> = all.iter().filter(|column| column.name != "time").collect();
-    if signals.is_empty() {
-        return Err(unknown_columns(&layout, known));
-    }
-    let columns = rows::read(text, &layout, clock, &signals, fewest)?;
-    let is_read = |k: usize| all.iter().any(|column| column.index == k || column.clock == Some(k));
-    let left_out = layout.headings.iter().enumerate().filter(|(k, _)| !is_read(*k));
-    let left_out: Vec<&str> = left_out.map(|(_, heading)| heading.as_str()).collect();
-    let how = in_words(&layout, &left_out);
-    // what a user has stated of the columns stays as it is
-    let map = match map.columns.is_empty() {
-        true => map::written(&layout, map.table.encoding.as_deref(), &all),
-        false => map.text.clone(),
-    };
-    Ok(ReadTable { columns, map, how })
+    let columns = rows::read(text, &layout, clock, &signals(&layout.titles, &all, known)?, fewest)?;
+    let mut how = form_in_words(&layout);
+    how.extend(left_out(&layout.titles, &all));
+    let form = map::written_form(&layout, map.table.encoding.as_deref());
+    Ok(ReadTable { columns, map: map_of(map, &form, &layout.titles, &all), how: in_words(&how) })
 }
 
-/// How a file of this `layout` was read, if that is not plain.
-fn in_words(layout: &TextLayout, left_out: &[&str]) -> Option<String> {
+/// Reads the curves of `channels`; see [`Source::read`].
+fn read_channels(
+    channels: &[Channel],
+    map: &Map,
+    known: &[Curve],
+    fewest: usize,
+) -> Result<ReadTable, String> {
+    let titles = channels::titles(channels);
+    let all = chosen(&titles, map, known)?;
+    let wanted = signals(&titles, &all, known)?;
+    let times = all.iter().find(|column| column.name == "time");
+    let columns = channels::read(channels, map.even()?, times, &wanted, fewest)?;
+    let how: Vec<String> = left_out(&titles, &all).into_iter().collect();
+    Ok(ReadTable { columns, map: map_of(map, "", &titles, &all), how: in_words(&how) })
+}
+
+/// The columns that `map` names, or the headings.
+fn chosen(titles: &Titles, map: &Map, known: &[Curve]) -> Result<Vec<Column>, String> {
+    if map.columns.is_empty() { column::by_heading(titles, known) } else { map.named(titles, known) }
+}
+
+/// Those of the columns `all` that are no times.
+fn signals<'c>(titles: &Titles, all: &'c [Column], known: &[Curve]) -> Result<Vec<&'c Column>, String> {
+    let signals: Vec<&Column> = all.iter().filter(|column| column.name != "time").collect();
+    if signals.is_empty() { Err(unknown_columns(titles, known)) } else { Ok(signals) }
+}
+
+/// That nothing says when the samples were taken.
+fn no_time(titles: &Titles) -> String {
+    format!(
+        "there is no column `time` (there are: {}); name it in a map, or start and interval under [time]",
+        titles.headings.join(" | ")
+    )
+}
+
+/// The user's map if it names columns, else one of what was inferred.
+fn map_of(map: &Map, form: &str, titles: &Titles, all: &[Column]) -> String {
+    // what a user has stated of the columns stays as it is
+    if map.columns.is_empty() { map::written(form, titles, all) } else { map.text.clone() }
+}
+
+/// The columns that were not read.
+fn left_out(titles: &Titles, all: &[Column]) -> Option<String> {
+    let is_read = |k: usize| all.iter().any(|column| column.index == k || column.clock == Some(k));
+    let others = titles.headings.iter().enumerate().filter(|(k, _)| !is_read(*k));
+    let others: Vec<&str> = others.map(|(_, heading)| heading.as_str()).collect();
+    (!others.is_empty()).then(|| format!("not used: {}", others.join(", ")))
+}
+
+/// What is not plain of a text of this `layout`.
+fn form_in_words(layout: &TextLayout) -> Vec<String> {
     let delimiter = match layout.delimiter {
         ' ' => "spaces".to_owned(),
         '\t' => "tabs".to_owned(),
@@ -76,22 +136,23 @@ fn in_words(layout: &TextLayout, left_out: &[&str]) -> Option<String> {
     if (layout.delimiter, layout.decimal) != (',', '.') {
         parts.push(format!("columns separated by {delimiter}, decimal sign `{}`", layout.decimal));
     }
-    if layout.units.iter().any(|unit| !unit.is_empty()) {
+    if layout.titles.units.iter().any(|unit| !unit.is_empty()) {
         parts.push("units from the line below the headings".to_owned());
     }
-    if !left_out.is_empty() {
-        parts.push(format!("not used: {}", left_out.join(", ")));
-    }
+    parts
+}
+
+fn in_words(parts: &[String]) -> Option<String> {
     (!parts.is_empty()).then(|| format!("{}; --save-map FILE writes how it was read", parts.join("; ")))
 }
 
 /// That no column is called as a curve, with a map to fill in.
-fn unknown_columns(layout: &TextLayout, known: &[Curve]) -> String {
+fn unknown_columns(titles: &Titles, known: &[Curve]) -> String {
     let names = column::names(known);
     format!(
         "there is no signal except the time: no column is called as a curve (there are: {}); name them in a map, such as\n\n[columns]\ntime = {{ \
          column = 1, unit = \"s\" }}\n{} = {{ column = 2, unit = \"V\", sensitivity = \"0.5 m/s/V\" }}\n\nwith the curves {}",
-        layout.headings.join(" | "),
+        titles.headings.join(" | "),
         names.get(1).unwrap_or(&"outer_velocity"),
         names[1..].join(", ")
     )

@@ -1,26 +1,11 @@
 //! The numbers of a table of text.
 
-use super::column::{Column, Measures};
+use super::column::Column;
 use super::layout::{self, TextLayout};
-use crate::curves::MonotoneCubic;
+use super::series::{self, Columns, MOST, Signal};
 
-/// Most rows: a second at 20 MHz.
-const MOST: usize = 20_000_000;
 /// What programs write for a value that is missing.
 const MISSING: [&str; 7] = ["", "nan", "-nan", "n/a", "#n/a", "--", "null"];
-
-/// Values by name in SI, over the time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Columns {
-    /// Time in s, strictly increasing. Shape (rows).
-    pub time: Vec<f64>,
-    /// The others, in the order asked for. Shapes (rows).
-    pub values: Vec<(&'static str, Vec<f64>)>,
-    /// Where values were missing, which are interpolated: name of the curve, first and last time in s.
-    pub gaps: Vec<(&'static str, [f64; 2])>,
-    /// Curves that are integrals, from 0 on.
-    pub integrals: Vec<&'static str>,
-}
 
 /// Where the times come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,89 +132,13 @@ impl<'t> RowsSoFar<'t> {
     }
 
     fn finished(self, fewest: usize) -> Result<Columns, String> {
-        let samples = self.time.len();
-        if samples < fewest {
-            return Err(format!("has {samples} samples; at least {fewest} are needed"));
-        }
-        let (mut values, mut gaps) = (Vec::new(), Vec::new());
         let scale = if let Clock::Column(column) = self.clock { column.factor } else { 1.0 };
-        for ((column, mut own), times) in self.columns.iter().zip(self.values).zip(self.own_times) {
-            let missing = filled(column.name, &self.time, &mut own)?;
-            gaps.extend(missing.into_iter().map(|span| (column.name, span)));
-            if column.clock.is_some() || column.delay != 0.0 {
-                let clock = match column.clock {
-                    Some(_) => times.iter().map(|t| t * scale).collect(),
-                    None => self.time.clone(),
-                };
-                own = moved(column, clock, &own, &self.time)?;
-            }
-            values.push((column.name, derived(column.measures, &self.time, own)));
-        }
-        let integrals = self.columns.iter().filter(|column| column.measures == Measures::Acceleration);
-        let integrals = integrals.map(|column| column.name).collect();
-        Ok(Columns { time: self.time, values, gaps, integrals })
-    }
-}
-
-/// Fills what is missing of `values` by straight lines; where that was.
-fn filled(name: &str, time: &[f64], values: &mut [f64]) -> Result<Vec<[f64; 2]>, String> {
-    let known: Vec<usize> = (0..values.len()).filter(|k| values[*k].is_finite()).collect();
-    let [Some(&first), Some(&last)] = [known.first(), known.last()] else {
-        return Err(format!("{name} has no value"));
-    };
-    let mut gaps = Vec::new();
-    for (edge, ends) in [(first, 0..first), (last, last + 1..values.len())] {
-        if let (Some(from), Some(to)) = (ends.clone().next(), ends.clone().last()) {
-            gaps.push([time[from], time[to]]);
-            let value = values[edge];
-            values[ends].fill(value);
-        }
-    }
-    for pair in known.windows(2).filter(|pair| pair[1] > pair[0] + 1) {
-        let [from, to] = [pair[0], pair[1]];
-        gaps.push([time[from + 1], time[to - 1]]);
-        let slope = (values[to] - values[from]) / (time[to] - time[from]);
-        for k in from + 1..to {
-            values[k] = values[from] + slope * (time[k] - time[from]);
-        }
-    }
-    gaps.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    Ok(gaps)
-}
-
-/// The `values` at the times `clock` of a channel's own, which is late by its delay, at the times of all.
-fn moved(column: &Column, clock: Vec<f64>, values: &[f64], time: &[f64]) -> Result<Vec<f64>, String> {
-    if clock.windows(2).any(|pair| pair[1] <= pair[0]) {
-        return Err(format!("the times of {} do not increase", column.name));
-    }
-    let clock: Vec<f64> = clock.iter().map(|t| t - column.delay).collect();
-    let curve = MonotoneCubic::new(&clock, values);
-    Ok(time.iter().map(|t| curve.at(*t)).collect())
-}
-
-/// The curve that follows from what a column measures: a velocity is the integral of an acceleration by the trapezoidal rule, from 0; a force
-/// the rate of an impulse, by differences over two intervals.
-fn derived(measures: Measures, time: &[f64], values: Vec<f64>) -> Vec<f64> {
-    match measures {
-        Measures::Acceleration => {
-            let mut sum = 0.0;
-            let step = |k: usize| 0.5 * (time[k] - time[k - 1]) * (values[k] + values[k - 1]);
-            (0..values.len())
-                .map(|k| {
-                    sum += if k == 0 { 0.0 } else { step(k) };
-                    sum
-                })
-                .collect()
-        }
-        Measures::Impulse => {
-            let last = values.len() - 1;
-            let rate = |k: usize| {
-                let [from, to] = [k.saturating_sub(1), (k + 1).min(last)];
-                (values[to] - values[from]) / (time[to] - time[from])
-            };
-            (0..=last).map(rate).collect()
-        }
-        _ => values,
+        let signals =
+            self.columns.iter().zip(self.values).zip(self.own_times).map(|((column, values), times)| {
+                let clock = column.clock.map(|_| times.iter().map(|t| t * scale).collect());
+                Signal { column, values, clock }
+            });
+        series::columns(self.time, signals.collect(), fewest)
     }
 }
 

@@ -1,7 +1,7 @@
 //! A record from a file: times and signals.
 
 use super::filter::SIGNALS;
-use crate::columns::{self, Map, ReadTable};
+use crate::columns::{Columns, Map, ReadTable, Source};
 use crate::error::{Error, Result};
 use crate::kinds::KINDS;
 use crate::result::Curve;
@@ -46,39 +46,32 @@ pub struct ReadRecord {
 }
 
 impl Record {
-    /// Reads a table of text whose headings name quantity and unit, such as `time [us]`, `outer_velocity [mm/s]`, or that `map` describes;
-    /// without unit a column is in SI.
+    /// The record in `file`, which consists of `source`: its headings name quantity and unit, such as `time [us]`, `outer_velocity [mm/s]`, or
+    /// `map` describes them; without unit a column is in SI.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there is no such file, [`Error::Scene`] if it is no record.
-    pub fn read(path: &Path, map: &Map) -> Result<ReadRecord> {
-        let bytes = std::fs::read(path).map_err(|e| match e.kind() {
-            std::io::ErrorKind::NotFound => {
-                Error::Usage(format!("there is no measured file {}", path.display()))
-            }
-            _ => Error::io("reading", path, e),
-        })?;
-        Self::parse(path, &bytes, map).map_err(|reason| {
+    /// [`Error::Scene`] if it is no record.
+    pub fn of(file: &Path, source: &Source, map: &Map) -> Result<ReadRecord> {
+        Self::parse(file, source, map).map_err(|reason| {
             Error::Scene(miette::miette!(
                 help = "headings such as `time [us],outer_velocity [mm/s],inner_velocity [mm/s]` need no map; for others name a map with --map",
                 "{}: {reason}",
-                path.display()
+                file.display()
             ))
         })
     }
 
-    fn parse(path: &Path, bytes: &[u8], map: &Map) -> std::result::Result<ReadRecord, String> {
+    fn parse(file: &Path, source: &Source, map: &Map) -> std::result::Result<ReadRecord, String> {
         let known: Vec<Curve> = KINDS.iter().flat_map(|kind| kind.curves()).cloned().collect();
-        let text = columns::decoded(bytes, map.table.encoding.as_deref())?;
-        let ReadTable { columns, map, how } = columns::read(&text, map, &known, FEWEST)?;
+        let ReadTable { columns, map, how } = source.read(map, &known, FEWEST)?;
         // histories of this program have more curves than instruments show
-        let columns::Columns { time, values, gaps, integrals } = columns;
+        let Columns { time, values, gaps, integrals } = columns;
         let measured = values.into_iter().filter(|(name, _)| SIGNALS.contains(name));
         let channels: Vec<_> = measured.map(|(quantity, values)| Channel { quantity, values }).collect();
         if channels.is_empty() {
             return Err(format!("it has none of the signals {}", SIGNALS.join(", ")));
         }
-        let record = Record { file: path.to_path_buf(), time, channels, gaps, integrals };
+        let record = Record { file: file.to_path_buf(), time, channels, gaps, integrals };
         Ok(ReadRecord { record, map, how })
     }
 
@@ -101,7 +94,7 @@ mod tests {
     }
 
     fn parse(text: &str) -> std::result::Result<Record, String> {
-        Record::parse(Path::new("r.csv"), text.as_bytes(), &Map::default()).map(|read| read.record)
+        Record::parse(Path::new("r.csv"), &Source::Text(text.into()), &Map::default()).map(|read| read.record)
     }
 
     #[test]
@@ -138,7 +131,7 @@ mod tests {
     fn a_map_says_what_a_file_does_not() {
         let read = |map: &str, text: &str| {
             let map = Map::parse(map).expect("a map");
-            Record::parse(Path::new("r.csv"), text.as_bytes(), &map)
+            Record::parse(Path::new("r.csv"), &Source::Text(text.into()), &map)
                 .map(|read| read.record)
                 .expect("a record")
         };
@@ -174,9 +167,10 @@ mod tests {
     fn the_map_of_what_was_inferred_reads_the_same() {
         let lines = (0..40).map(|k| format!("{k},5;{};{}", -k, k)).collect::<Vec<_>>().join("\n");
         let text = format!("; made by x\ntime;outer_acceleration;inner_displacement\nus;m/s2;mm\n{lines}\n");
-        let first = Record::parse(Path::new("r.csv"), text.as_bytes(), &Map::default()).expect("a record");
+        let first = Record::parse(Path::new("r.csv"), &Source::Text(text.as_str().into()), &Map::default())
+            .expect("a record");
         let map = Map::parse(&first.map).expect("a map");
-        let again = Record::parse(Path::new("r.csv"), text.as_bytes(), &map).expect("a record");
+        let again = Record::parse(Path::new("r.csv"), &Source::Text(text.into()), &map).expect("a record");
         assert_eq!(first.record, again.record);
         assert!((first.record.time[1] - 1.5e-6).abs() < 1e-18, "{}", first.map);
     }

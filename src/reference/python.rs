@@ -25,12 +25,18 @@ enum Purpose {
     References,
     /// Meshes of bodies from files alone, which need no FEniCSx.
     Meshes,
+    /// Records in binary formats.
+    Records,
 }
 
 impl Purpose {
     /// Whether it needs the module called `name`.
     fn needs(self, name: &str) -> bool {
-        self == Purpose::References || ["python", "gmsh", "meshio", "numpy", "scipy"].contains(&name)
+        match self {
+            Purpose::References => true,
+            Purpose::Meshes => ["python", "gmsh", "meshio", "numpy", "scipy"].contains(&name),
+            Purpose::Records => ["python", "numpy", "scipy"].contains(&name),
+        }
     }
 
     /// What is needed, and how it is installed.
@@ -42,6 +48,10 @@ impl Purpose {
             Purpose::Meshes => [
                 "the mesh of a body needs a Python that imports gmsh and meshio",
                 "install them with `pip install gmsh meshio scipy`",
+            ],
+            Purpose::Records => [
+                "a record in a binary format needs a Python that imports numpy and scipy",
+                "install them with `pip install \"impactcheck[records]\"`, or export the record as text (CSV)",
             ],
         }
     }
@@ -126,6 +136,14 @@ pub fn python() -> Result<PathBuf> {
 /// As [`python`].
 pub(super) fn mesher() -> Result<PathBuf> {
     found_for(Purpose::Meshes)
+}
+
+/// The Python that reads records in binary formats, as [`python`]; it needs no FEniCSx.
+///
+/// # Errors
+/// As [`python`].
+pub(super) fn reader() -> Result<PathBuf> {
+    found_for(Purpose::Records)
 }
 
 fn found_for(purpose: Purpose) -> Result<PathBuf> {

@@ -4,9 +4,10 @@
 mod calculix;
 
 use super::entry::{self, Origin, Stored};
+use super::record_source;
 use super::store::Installed;
 use super::{Resolution, Store, identity};
-use crate::columns::{self, Columns, Map, decoded};
+use crate::columns::{Columns, Map, Source, decoded};
 use crate::external;
 use crate::kinds;
 use crate::result::{History, Outcome, Summary, Table};
@@ -42,7 +43,8 @@ pub fn read_import(scene: &Scene, file: &Path, map: Option<&Path>) -> Result<Imp
     let of_map = |reason| unusable(map.unwrap_or(file), reason);
     let mapping = Map::parse(map_text.as_deref().unwrap_or_default()).map_err(of_map)?;
     let stated = mapping.stated(kinds::of(scene).quantities()).map_err(of_map)?;
-    let history = history(scene, file, &bytes, &mapping).map_err(|reason| unusable(file, reason))?;
+    let source = source(file, &bytes, &mapping)?;
+    let history = history(scene, &source, &mapping).map_err(|reason| unusable(file, reason))?;
     let outcome = outcome(scene, &mapping, stated, history);
     let provenance = json!({
         "scene": identity::solver_document(scene, Resolution::Imported)?,
@@ -72,17 +74,24 @@ impl Imported {
     }
 }
 
-/// The curves of a file of any of the forms known, from the first touch on.
-fn history(scene: &Scene, file: &Path, bytes: &[u8], mapping: &Map) -> std::result::Result<History, String> {
-    let text = decoded(bytes, mapping.table.encoding.as_deref())?;
+/// What a file of any of the forms known consists of.
+fn source<'b>(file: &Path, bytes: &'b [u8], mapping: &Map) -> Result<Source<'b>> {
+    let unusable = |reason: String| Error::Reference(format!("{}: {reason}", file.display()));
     let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let text = match ending.as_deref() {
-        Some("dat") => calculix::dat(&text)?.into(),
-        Some("frd") => calculix::frd(&text, &mapping.headings())?.into(),
-        _ => text,
-    };
+    let text = || decoded(bytes, mapping.table.encoding.as_deref()).map_err(unusable);
+    match ending.as_deref() {
+        Some("dat") => Ok(Source::Text(calculix::dat(&text()?).map_err(unusable)?.into())),
+        Some("frd") => {
+            Ok(Source::Text(calculix::frd(&text()?, &mapping.headings()).map_err(unusable)?.into()))
+        }
+        _ => record_source(file, bytes, mapping),
+    }
+}
+
+/// The curves of a file, from the first touch on.
+fn history(scene: &Scene, source: &Source, mapping: &Map) -> std::result::Result<History, String> {
     let kind = kinds::of(scene);
-    let found = columns::read(&text, mapping, kind.curves(), FEWEST)?;
+    let found = source.read(mapping, kind.curves(), FEWEST)?;
     external::assembled(kind, from_first_contact(found.columns)?)
 }
 

@@ -1,6 +1,6 @@
 //! Meshes of bodies whose shape is in a file, in the cache of meshes.
 
-use super::{Refused, mesh_with, run};
+use super::{Refused, mesh_with, run_to_end};
 use crate::body::cache::Cache;
 use crate::interrupt::Scratch;
 use crate::kinds::general_impact::{self, GeneralImpact, MeshRequest, set_mesher};
@@ -43,7 +43,7 @@ pub fn body_mesh(request: &MeshRequest) -> Result<PathBuf> {
     // other processes may make the same mesh at the same time
     let own = Scratch::new_in(&folder, ".making-").map_err(writing)?;
     let made = own.path().join("mesh.vtu");
-    mesh_with(&python::mesher()?, &request.document, &[], request.factor, &made).map_err(refused)?;
+    mesh_with(&python::mesher()?, &request.document, &[], request.factor, &made).map_err(Refused::error)?;
     if !is_intact(&made) {
         return Err(Error::Solver("the mesher wrote no mesh with its description".into()));
     }
@@ -73,7 +73,7 @@ pub(super) fn make_body_mesh(setup: &GeneralImpact, size_factor: f64, out: &Path
         )));
     }
     let request = body.mesh_request(size_factor);
-    mesh_with(&python::mesher()?, &request.document, &[], size_factor, out).map_err(refused)?;
+    mesh_with(&python::mesher()?, &request.document, &[], size_factor, out).map_err(Refused::error)?;
     let text =
         std::fs::read_to_string(out.with_extension("json")).map_err(|e| Error::io("reading", out, e))?;
     serde_json::from_str(&text).map_err(|e| Error::Internal(format!("the mesh's description: {e}")))
@@ -93,17 +93,9 @@ pub fn body_groups(file: &Path, unit: Option<&str>) -> Result<Value> {
     let folder =
         Scratch::new_in(&folder, "impactcheck-").map_err(|e| Error::io("writing into", &folder, e))?;
     let list = folder.path().join("groups.json");
-    run(command.arg("--out").arg(&list), &python).map_err(refused)?;
+    run_to_end(command.arg("--out").arg(&list), &python)?;
     let text = std::fs::read_to_string(&list).map_err(|e| Error::io("reading", &list, e))?;
     serde_json::from_str(&text).map_err(|e| Error::Internal(format!("the list of groups: {e}")))
-}
-
-/// A fault of the scene as the scene's, any other as the mesher's.
-fn refused(why: Refused) -> Error {
-    match why.is_of_scene {
-        true => Error::Scene(miette::miette!("{}", why.message)),
-        false => Error::Solver(why.message),
-    }
 }
 
 /// Whether the mesh file at `path` and its description are there and belong together.

@@ -59,6 +59,16 @@ struct Refused {
     is_of_scene: bool,
 }
 
+impl Refused {
+    /// A fault of the scene as the scene's, any other as the solver's.
+    fn error(self) -> Error {
+        match self.is_of_scene {
+            true => Error::Scene(miette::miette!("{}", self.message)),
+            false => Error::Solver(self.message),
+        }
+    }
+}
+
 impl From<String> for Refused {
     fn from(message: String) -> Self {
         Self { message, is_of_scene: false }
@@ -85,6 +95,14 @@ fn mesh_with(
 }
 
 /// Runs a command of `fem_reference` to its end.
+///
+/// # Errors
+/// [`Error::Scene`] if its input is at fault, else [`Error::Solver`].
+pub(super) fn run_to_end(command: &mut std::process::Command, python: &Path) -> Result<()> {
+    run(command, python).map_err(Refused::error)
+}
+
+/// As [`run_to_end`], with the reason as a text.
 fn run(command: &mut std::process::Command, python: &Path) -> std::result::Result<(), Refused> {
     let ending =
         child::run(command, &mut |_| {}).map_err(|e| format!("{} can't be run: {e}", python.display()))?;
