@@ -3,7 +3,7 @@
 use super::compare_arguments::Arguments;
 use super::comparison_job::Job;
 use super::{Context, compare_inputs, kinds, stored_references};
-use crate::error::{ExitStatus, Result};
+use crate::error::{Error, ExitStatus, Result};
 use crate::report;
 use clap::Args;
 
@@ -51,11 +51,30 @@ fn print_without_reference(context: &Context, arguments: &Arguments) {
     }
 }
 
+/// Compares models with the measurement, which needs no reference.
+fn measured_alone(
+    context: &Context,
+    job: &Job,
+    arguments: &Arguments,
+    missing: &Error,
+) -> Result<ExitStatus> {
+    context.note(super::describe(missing));
+    let found = job.measured_alone(context)?;
+    arguments.json.print(&found, |found| report::measured_alone(&found.measured))?;
+    context.note(format_args!("models are compared with the measurement alone; there is no report page"));
+    Ok(ExitStatus::Pass)
+}
+
 /// Compares and writes the report. The verdict is shown; the exit status tells only whether the job was done.
 fn once(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     let job = Job::read(context, arguments)?;
     job.check_folders(&[])?;
-    let results = job.results(context)?;
+    let results = match job.results(context) {
+        Err(error) if error.exit_status() == ExitStatus::Reference && !arguments.measured.is_empty() => {
+            return measured_alone(context, &job, arguments, &error);
+        }
+        results => results?,
+    };
     let comparisons = job.comparisons(context, &results)?;
     let entries = job.trends(&comparisons, None)?;
     let report = job.report(context, &results, comparisons, &entries)?;

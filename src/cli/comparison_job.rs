@@ -13,12 +13,13 @@ use crate::ci::{acceptance, trend};
 use crate::comparison::{Comparison, ComparisonInput, GateRules, SceneComparison, budget};
 use crate::error::{Error, Result};
 use crate::file::write_file;
-use crate::measured::{self, Record};
+use crate::measured::{self, Measured, Record};
 use crate::reference::{Resolution, Stored};
 use crate::report::{self, Attachments, Cost, Export, FigureFile, Report, SceneReport, Width};
-use crate::result::Outcome;
+use crate::result::{Outcome, SCHEMA_VERSION, Summary};
 use crate::scene::Scene;
 use crate::validated::Validation;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -47,6 +48,15 @@ pub(super) struct Results {
     coarser: Option<(Stored, Vec<Outcome>)>,
     /// CalculiX's solution.
     other: Option<Stored>,
+}
+
+/// The document of `compare --measured` for a scene without a reference.
+#[derive(Debug, Serialize)]
+pub(super) struct MeasuredAlone {
+    schema_version: u32,
+    scene: String,
+    models: Vec<Summary>,
+    pub(super) measured: Measured,
 }
 
 impl<'a> Job<'a> {
@@ -114,6 +124,32 @@ impl<'a> Job<'a> {
 
     pub(super) fn out(&self) -> &Path {
         &self.arguments.out
+    }
+
+    /// The scene with its measured records beside its models alone: there is no reference.
+    ///
+    /// # Errors
+    /// Those of models and records; [`Error::Usage`] if no model runs without a reference.
+    pub(super) fn measured_alone(&self, context: &Context) -> Result<MeasuredAlone> {
+        let [(file, scene)] = &self.scenes[..] else {
+            return Err(Error::Internal("records of several scenes".into()));
+        };
+        let reduced =
+            kinds::of(scene).alone(scene, (&self.arguments.models[..], self.arguments.tolerance))?;
+        let mut partners: Vec<_> =
+            reduced.iter().map(|o| (o.summary.model.as_deref().unwrap_or_default(), o)).collect();
+        // the finest model stands for the reference
+        partners.reverse();
+        let propagations = propagate(context, file, scene, &reduced)?;
+        let how = (self.arguments.bandwidth, self.arguments.speed);
+        let measured = measured::compare(scene, &self.records, &partners, how, &propagations)?;
+        let summaries = reduced.iter().map(|outcome| outcome.summary.clone()).collect();
+        Ok(MeasuredAlone {
+            schema_version: SCHEMA_VERSION,
+            scene: scene.name.clone(),
+            models: summaries,
+            measured,
+        })
     }
 
     /// References from the store (or computed), and the reduced models' runs, of every scene.
@@ -184,8 +220,11 @@ impl<'a> Job<'a> {
             BTreeMap::new()
         });
         let how = (self.arguments.bandwidth, self.arguments.speed);
-        let measured = (!self.records.is_empty())
-            .then(|| measured::compare(scene, &self.records, reference, reduced, how, &propagations));
+        let measured = (!self.records.is_empty()).then(|| {
+            let models = reduced.iter().map(|o| (o.summary.model.as_deref().unwrap_or_default(), o));
+            let partners: Vec<_> = std::iter::once((measured::REFERENCE, reference)).chain(models).collect();
+            measured::compare(scene, &self.records, &partners, how, &propagations)
+        });
         let input = ComparisonInput {
             coarser: coarser.as_ref().map(|(stored, reduced)| (&stored.outcome, &reduced[..])),
             other: other.as_ref().map(|other| &other.outcome),

@@ -17,6 +17,9 @@ use crate::uncertainty::validation::{Assessment, numerical, propagated_of};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+/// Name of the reference among the partners.
+pub const REFERENCE: &str = "reference";
+
 /// Measured records of one scene beside its models; part of the comparison document.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measured {
@@ -26,11 +29,13 @@ pub struct Measured {
     pub bandwidth: f64,
     /// Where the outer body's speed before the impact comes from.
     pub speed: Speed,
+    /// The result over which the records are laid: "reference" or a model's name.
+    pub aligned_with: String,
     /// The records, in the order given.
     pub records: Vec<AlignedRecord>,
     /// Efficiency over the records, each impact once; `None` if none of them shows one.
     pub efficiency: Option<Series>,
-    /// Reference and models against the first record.
+    /// Reference, if there is one, and models against the first record.
     pub partners: Vec<MeasuredComparison>,
     /// Time axis of the curves.
     pub window: CommonAxis,
@@ -75,7 +80,7 @@ pub struct MeasuredComparison {
     pub efficiency: Option<f64>,
     /// Its efficiency less the mean of the measured ones.
     pub efficiency_difference: Option<f64>,
-    /// What that difference shows if the inputs are as uncertain as the scene says.
+    /// What that difference shows, the inputs being as uncertain as the scene says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub validation: Option<Assessment>,
     /// Area between the distributions of its efficiency, inputs being as uncertain as that, and of the measured ones.
@@ -88,44 +93,45 @@ pub struct MeasuredComparison {
     pub filtered: Vec<SampledCurve>,
 }
 
-/// Aligns `records` with the reference and compares reference and models with the first of them; `propagations` are the propagated
-/// uncertainties of the scene's inputs, by the name of the model, empty if they are certain.
+/// Aligns `records` with the first of the `partners` (names and results) and compares all of them with the first record; `propagations` are
+/// the propagated uncertainties of the scene's inputs, by the name of the model, empty if they are certain.
 ///
 /// # Errors
-/// [`Error::Reference`] if the reference's history can't be used, [`Error::Scene`] if a record can't be aligned,
-/// [`Error::Usage`] if there is no record or the bandwidth is not usable.
+/// [`Error::Reference`] if the first partner's history can't be used, [`Error::Scene`] if a record can't be aligned,
+/// [`Error::Usage`] if there is no record or partner, or the bandwidth is not usable.
 pub fn compare(
     scene: &Scene,
     records: &[Record],
-    reference: &Outcome,
-    reduced: &[Outcome],
+    partners: &[(&str, &Outcome)],
     (bandwidth, speed): (f64, Speed),
     propagations: &BTreeMap<String, PropagatedUncertainty>,
 ) -> Result<Measured> {
     let kind = kinds::of(scene);
     let approach = kind.approach(scene)?;
-    let window = CommonAxis::of_reference(reference).ok_or_else(|| {
-        Error::Reference(format!("the history of the reference of `{}` can't be used", scene.name))
-    })?;
-    let model = Filtered::new(&reference.history, bandwidth)?;
-    let ends = ContactEnds::of(&reference.summary)
-        .ok_or_else(|| Error::Reference(format!("the reference of `{}`: {CUT}", scene.name)))?;
+    let Some(((lead, first), others)) = partners.split_first() else {
+        return Err(Error::Usage("there is no result to compare the record with".into()));
+    };
+    let who = if *lead == REFERENCE { "the reference".to_owned() } else { format!("model {lead}") };
+    let window = CommonAxis::of_reference(first)
+        .ok_or_else(|| Error::Reference(format!("the history of {who} of `{}` can't be used", scene.name)))?;
+    let model = Filtered::new(&first.history, bandwidth)?;
+    let ends = ContactEnds::of(&first.summary)
+        .ok_or_else(|| Error::Reference(format!("{who} of `{}`: {CUT}", scene.name)))?;
     let records = align_all(records, &model, ends, &approach, (bandwidth, speed))?;
-    let first = records.first().ok_or_else(|| Error::Usage("no measured file is specified".into()))?;
-    let window = CommonAxis { end: window.end.min(first.time.last().copied().unwrap_or(0.0)), ..window };
+    let record = records.first().ok_or_else(|| Error::Usage("no measured file is specified".into()))?;
+    let window = CommonAxis { end: window.end.min(record.time.last().copied().unwrap_or(0.0)), ..window };
     if window.end <= window.start {
         return Err(Error::Scene(miette::miette!(
             "{}: the record ends before the impact",
-            first.file.display()
+            record.file.display()
         )));
     }
-    let (curves, efficiency) = (sampled(first, window), Efficiency::of(&records));
+    let (curves, efficiency) = (sampled(record, window), Efficiency::of(&records));
     // another program need not give the curves that are measured
-    let shows = |outcome: &&Outcome| curves.iter().all(|c| outcome.history.curve(c.quantity).is_some());
-    let models = reduced.iter().filter(shows);
-    let outcomes = std::iter::once(("reference", reference))
-        .chain(models.map(|outcome| (outcome.summary.model.as_deref().unwrap_or_default(), outcome)));
-    let comparators = outcomes
+    let shows = |outcome: &Outcome| curves.iter().all(|c| outcome.history.curve(c.quantity).is_some());
+    let others = others.iter().filter(|(_, outcome)| shows(outcome));
+    let comparators = std::iter::once(&(*lead, *first))
+        .chain(others)
         .map(|(comparator, outcome)| {
             let filtered = Filtered::new(&outcome.history, bandwidth)?;
             let filtered: Vec<SampledCurve> = SIGNALS
@@ -139,7 +145,7 @@ pub fn compare(
             let (validation, area) =
                 efficiency.assessed(&outcome.summary, propagated_of(propagations, comparator));
             Ok(MeasuredComparison {
-                partner: comparator.to_owned(),
+                partner: (*comparator).to_owned(),
                 efficiency: outcome.summary.value("efficiency"),
                 efficiency_difference: efficiency.difference(&outcome.summary),
                 validation,
@@ -150,7 +156,17 @@ pub fn compare(
         })
         .collect::<Result<Vec<_>>>()?;
     let efficiency = efficiency.series;
-    Ok(Measured { rule: RULE, bandwidth, speed, efficiency, partners: comparators, window, curves, records })
+    Ok(Measured {
+        rule: RULE,
+        bandwidth,
+        speed,
+        aligned_with: (*lead).to_owned(),
+        efficiency,
+        partners: comparators,
+        window,
+        curves,
+        records,
+    })
 }
 
 /// What the records show of the efficiency.
@@ -189,8 +205,12 @@ impl Efficiency {
         propagated: Option<&PropagatedUncertainty>,
     ) -> (Option<Assessment>, Option<Area>) {
         let propagated = propagated.and_then(|propagated| propagated.quantities.get("efficiency"));
-        let Some((error, propagated)) = self.difference(summary).zip(propagated) else { return (None, None) };
-        let assessment = Assessment::of(error, (numerical(summary, "efficiency"), self.u_d), propagated);
+        let Some(error) = self.difference(summary) else { return (None, None) };
+        let sides = (numerical(summary, "efficiency"), self.u_d);
+        let Some(propagated) = propagated else {
+            return (Assessment::of_exact_inputs(error, sides, "1"), None);
+        };
+        let assessment = Assessment::of(error, sides, propagated);
         // the distribution about the result itself
         let shift = summary.value("efficiency").unwrap_or(f64::NAN) - propagated.nominal.unwrap_or(f64::NAN);
         let moved: Vec<f64> = propagated.values.iter().map(|value| value + shift).collect();

@@ -20,7 +20,7 @@ mod structure;
 
 pub use align::{AlignedRecord, ChannelCorrection, ContactEnds, Speed, align, align_all};
 pub use area::Area;
-pub use compare::{Measured, MeasuredComparison, Series, compare};
+pub use compare::{Measured, MeasuredComparison, REFERENCE, Series, compare};
 pub use filter::{Filtered, low_pass};
 pub use finding::{Finding, FindingKind};
 pub use record::{Channel, ReadRecord, Record};
@@ -33,7 +33,7 @@ pub const RULE: &str = "Offset and drift of a signal come from the free flight b
 velocity is constant: a velocity is fitted there with a step, an offset and a drift, a displacement with a straight line \
 on each side. Before the impact the inner body is at rest and the outer one has the scene's speed (with `--speed measured` \
 the speed is read from the signal, which then has no offset). A displacement is zero at the first contact. The shift in time \
-is the one that minimises the squared distance to the reference, filtered to the instrument's bandwidth, over the contact and \
+is the one that minimises the squared distance to the reference (without one, to the finest model), filtered to the instrument's bandwidth, over the contact and \
 as much time before and after it; each signal over its noise in free flight (at least 1 % of its span) and with any offset, drift \
 and amplitude, so that another speed or efficiency hardly moves it. The efficiency is that of the measured velocities. Its 95 % interval \
 follows from the noise in free flight and its correlation in time. Padding and what follows a further impact are not used.";

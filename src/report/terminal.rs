@@ -2,12 +2,14 @@
 
 use crate::comparison::{ModelComparison, SceneComparison, Verdict};
 use crate::format::significant;
+use crate::measured::Measured;
 use crate::report::conclusion::{HOLD, assumptions, conclusion, summaries};
 use crate::report::page::section::{measured, validation};
 use crate::report::summary_column::SummaryColumn;
 use crate::report::{Report, kinds, row_in_words};
 use crate::result::{Limit, Outcome, Summary};
 use crate::scene::Scene;
+use crate::uncertainty::validation::COVERAGE;
 use anstyle::{AnsiColor, Style};
 
 /// Styles; whoever prints takes them away where they can't be seen.
@@ -92,6 +94,7 @@ pub fn terminal(report: &Report, width: Width) -> String {
         text += &rows(columns, comparison, width).text();
         if let Some(measured) = &comparison.measured {
             text += &wrapped(&measured::sentence(measured));
+            text += &measured_table(measured);
         }
         text += &findings(comparison);
         text += &validation::validation_text(comparison);
@@ -134,6 +137,32 @@ pub fn alone(scene: &Scene, outcomes: &[Outcome]) -> String {
         table.row(model, cells(columns, summary, None, Width::Narrow), String::new());
     }
     format!("{}: reduced models without a reference\n{}", scene.name, table.text())
+}
+
+/// What a measurement shows of models that have no reference: warnings, efficiencies, and what their differences show.
+pub fn measured_alone(found: &Measured) -> String {
+    let warnings = measured::effects(found)
+        .map(|(record, effect)| wrapped(&format!("{YELLOW}warning{YELLOW:#}: {record}: {effect}")));
+    warnings.collect::<String>() + &wrapped(&measured::sentence(found)) + &measured_table(found)
+}
+
+/// Of each result the error of its efficiency against the measured one, that error's 95 % band, and what it shows.
+fn measured_table(found: &Measured) -> String {
+    let points = |value: f64| significant(100.0 * value, 2);
+    let mut table = TextTable { rows: Vec::new() };
+    let headings = ["efficiency, %", "E, points", "95 %"].map(str::to_owned);
+    table.row("against measured", headings.into(), String::new());
+    for partner in &found.partners {
+        let Some((efficiency, difference)) = partner.efficiency.zip(partner.efficiency_difference) else {
+            continue;
+        };
+        let of = partner.validation.as_ref();
+        let band = of.map_or("–".to_owned(), |of| format!("±{}", points(COVERAGE * of.u_val)));
+        let shows = of.map_or(String::new(), |of| of.verdict.words().to_owned());
+        let cells = vec![significant(100.0 * efficiency, 4), points(difference), band];
+        table.row(&partner.partner, cells, shows);
+    }
+    if table.rows.len() > 1 { table.text() } else { String::new() }
 }
 
 /// What `summary` gives in the columns; next to `reference` how far it is from it.

@@ -114,19 +114,34 @@ impl Assessment {
         propagated: &QuantityUncertainty,
     ) -> Option<Self> {
         let u_input = propagated.standard_deviation;
-        let u_val = [u_num, Some(u_input), u_d].into_iter().flatten().map(|u| u * u).sum::<f64>().sqrt();
+        let alone = |first: f64| u_input * first.max(0.0).sqrt();
+        let inputs = propagated.sobol.iter().map(|(name, share)| (name.clone(), alone(share.first)));
+        Self::assessed(error, Parts { u_num, u_input, u_d, inputs: inputs.collect() }, propagated.unit)
+    }
+
+    /// Of the `error`, in `unit`, of a quantity whose inputs count as exact, as [`of`](Self::of). `None` if neither side's uncertainty is
+    /// known either.
+    pub fn of_exact_inputs(
+        error: f64,
+        (u_num, u_d): (Option<f64>, Option<f64>),
+        unit: &'static str,
+    ) -> Option<Self> {
+        u_num.or(u_d)?;
+        Self::assessed(error, Parts { u_num, u_input: 0.0, u_d, inputs: BTreeMap::new() }, unit)
+    }
+
+    fn assessed(error: f64, parts: Parts, unit: &'static str) -> Option<Self> {
+        let known = [parts.u_num, Some(parts.u_input), parts.u_d].into_iter().flatten();
+        let u_val = known.map(|u| u * u).sum::<f64>().sqrt();
         if !(error.is_finite() && u_val.is_finite()) {
             return None;
         }
-        let alone = |first: f64| u_input * first.max(0.0).sqrt();
-        let inputs: BTreeMap<String, f64> =
-            propagated.sobol.iter().map(|(name, share)| (name.clone(), alone(share.first))).collect();
         let verdict = Shown::of(error, u_val);
-        let to = prefixed(propagated.unit, error.abs().max(u_val));
+        let to = prefixed(unit, error.abs().max(u_val));
         let [size, uncertainty, both] = [error.abs(), u_val, COVERAGE * u_val].map(|v| with_unit(v, to, 2));
         let sentence = match verdict {
             Shown::Within => format!(
-                "|E| = {size} is within u_val = {uncertainty}: with these input uncertainties no model error is shown"
+                "|E| = {size} is within u_val = {uncertainty}: with these uncertainties no model error is shown"
             ),
             Shown::Undecided => format!(
                 "|E| = {size} lies between u_val = {uncertainty} and twice that: a correct model may differ this much"
@@ -135,15 +150,9 @@ impl Assessment {
                 format!("|E| = {size} is more than 2 u_val = {both}: the model is in error, by E ± {both}")
             }
         };
-        let would_decide = (verdict != Shown::ModelError).then(|| decisive(error, u_val, &inputs)).flatten();
-        Some(Assessment {
-            error,
-            u_val,
-            parts: Parts { u_num, u_input, u_d, inputs },
-            verdict,
-            sentence,
-            would_decide,
-        })
+        let would_decide =
+            (verdict != Shown::ModelError).then(|| decisive(error, u_val, &parts.inputs)).flatten();
+        Some(Assessment { error, u_val, parts, verdict, sentence, would_decide })
     }
 }
 

@@ -135,7 +135,7 @@ fn metrics(measured: &Measured) -> Rows {
     rows
 }
 
-/// What the comparators' efficiencies show; nothing if the inputs are certain.
+/// What the comparators' efficiencies show; nothing if no uncertainty is known.
 fn validation(measured: &Measured) -> Option<Rows> {
     let heading = ["result", "E", "u_val", "u_num", "u_input", "u_D", "shows", "area", "above, below"];
     let points = |value: f64| format!("{} percentage points", significant(100.0 * value, 3));
@@ -161,7 +161,7 @@ fn validation(measured: &Measured) -> Option<Rows> {
 }
 
 /// What the columns of [`validation`] are.
-const VALIDATION: &str = "Efficiency with the uncertain inputs of the scene: E is the computed value minus the mean of the measured ones;     u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009). Area: between the distribution of the computed efficiency and that of the measured ones     (Ferson, Oberkampf & Ginzburg 2008), and its parts where the computed one is larger and smaller.";
+const VALIDATION: &str = "E is the computed efficiency minus the mean of the measured ones. Inputs without a stated uncertainty count as exact.     u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009). Area: between the distribution of the computed efficiency and that of the measured ones     (Ferson, Oberkampf & Ginzburg 2008), and its parts where the computed one is larger and smaller.";
 
 /// Mean and scatter in a sentence.
 pub(crate) fn sentence(measured: &Measured) -> String {

@@ -103,7 +103,8 @@ pub(crate) fn validation_text(comparison: &SceneComparison) -> String {
     };
     let measured = comparison.measured.iter().flat_map(|measured| &measured.partners);
     let of_comparators = measured.filter_map(|comparator| {
-        let of = comparator.validation.as_ref()?;
+        // without uncertain inputs the table of the measurement says all
+        let of = comparator.validation.as_ref().filter(|of| !of.parts.inputs.is_empty())?;
         Some(format!("  {} against the measurement: {}\n", comparator.partner, line("efficiency", of)))
     });
     comparison.models.iter().map(of_model).chain(of_comparators).collect()
