@@ -27,7 +27,7 @@ from .solve import compute
 MM = 1e-3
 FACTORS = [RESOLUTIONS["coarse"] * RATIO**k for k in range(MESHES)]
 """Of the meshes of `coarse`, finest first."""
-TRUTH = 1.5 * FACTORS[0]
+TRUTH = 1.25 * FACTORS[0]
 """Of the finer mesh."""
 COLUMNS = (*TARGETED, Target("first_frequency"))
 
@@ -63,8 +63,8 @@ def _uniform(draw: random.Random, low: float, high: float) -> float:
 def box(draw: random.Random) -> Part:
     """A box that is open below; its rim is held, its lid is struck."""
     wall = _uniform(draw, 1.0, 3.0)
-    length, width, height = (round(wall * draw.uniform(*span), 3) for span in ((7, 14), (7, 12), (4, 8)))
-    away = 2.5 * wall
+    length, width, height = (round(wall * draw.uniform(*span), 3) for span in ((5, 9), (5, 8), (3, 6)))
+    away = 2.0 * wall
     struck = (_uniform(draw, away, length - away), _uniform(draw, away, width - away), height)
     fillet, held = round(wall * draw.uniform(1.1, 1.6), 3), (0.5 * wall, 0.5 * width, 0.0)
     return Part("box", (length, width, height), wall, 0.0, fillet, struck, (0, 0, -1), held)
@@ -74,10 +74,10 @@ def bracket(draw: random.Random) -> Part:
     """An angle; the underside of its foot is held, its wall is struck."""
     wall = _uniform(draw, 1.0, 3.0)
     foot = round(wall * draw.uniform(0.8, 2.0), 3)
-    length, width, height = (round(wall * draw.uniform(*span), 3) for span in ((7, 14), (6, 12), (7, 12)))
+    length, width, height = (round(wall * draw.uniform(*span), 3) for span in ((5, 9), (4, 8), (6, 9)))
     fillet = round(wall * draw.uniform(0.7, 1.6), 3)
-    low = foot + fillet + wall
-    struck = (0.0, _uniform(draw, 1.5 * wall, width - 1.5 * wall), _uniform(draw, low, height - 1.5 * wall))
+    low = foot + fillet + 0.5 * wall
+    struck = (0.0, _uniform(draw, 1.5 * wall, width - 1.5 * wall), _uniform(draw, low, height - wall))
     held = (0.5 * length, 0.5 * width, 0.0)
     return Part("bracket", (length, width, height), wall, foot, fillet, struck, (1, 0, 0), held)
 

@@ -93,6 +93,12 @@ pub struct AlignedRecord {
     /// The signals without offset and drift.
     #[serde(skip)]
     pub signals: Vec<Channel>,
+    /// The same as they were measured. Shape (signals, samples).
+    #[serde(skip)]
+    pub raw: Vec<Vec<f64>>,
+    /// What the fits of the free flights leave of each signal, over the time in s from the first touch. Shape (signals, samples in flight).
+    #[serde(skip)]
+    pub residuals: Vec<Vec<(f64, f64)>>,
 }
 
 /// Contact of a body: the instants between which it may not fly freely.
@@ -190,6 +196,8 @@ impl Alignment<'_> {
             shift,
             noise: seen.iter().map(|seen| seen.flight.noise).collect(),
             ends: seen.iter().map(|seen| seen.ends).collect(),
+            residuals: seen.iter().map(|seen| seen.free.residuals()).collect(),
+            raw: self.record.channels.iter().map(|channel| channel.values.clone()).collect(),
             channels: seen.into_iter().map(|seen| seen.correction).collect(),
             outer_velocity_initial,
             inner_velocity_final: inner,

@@ -87,6 +87,27 @@ impl FreeFlight {
         Some(FreeFlightFit { level, slope, noise: before.deviation, step })
     }
 
+    /// What the fit leaves of every sample: times in s from the first touch, values in SI.
+    pub fn residuals(&self) -> Vec<(f64, f64)> {
+        let sides = [&self.before, &self.after];
+        if self.is_level {
+            let Some(FreeFlightFit { level, slope, step, .. }) = self.fitted() else { return Vec::new() };
+            let expected =
+                |t: f64, late: bool| level + slope * t + if late { step.unwrap_or(0.0) } else { 0.0 };
+            let of = |(side, late): (&Vec<(f64, f64)>, bool)| -> Vec<(f64, f64)> {
+                side.iter().map(|(t, y)| (*t, y - expected(*t, late))).collect()
+            };
+            return sides.into_iter().zip([false, true]).flat_map(of).collect();
+        }
+        let of = |side: &Vec<(f64, f64)>| -> Vec<(f64, f64)> {
+            let rows: Vec<([f64; 2], f64)> = side.iter().map(|(t, y)| ([1.0, *t], *y)).collect();
+            let Some(found) = fit(&rows) else { return Vec::new() };
+            let [level, slope] = found.coefficients;
+            side.iter().map(|(t, y)| (*t, y - level - slope * t)).collect()
+        };
+        sides.into_iter().flat_map(of).collect()
+    }
+
     /// Standard errors; `None` if there is too little free flight. `bandwidth` in Hz.
     pub fn errors(&self, bandwidth: f64) -> Option<FlightErrors> {
         let Grouped { time, values, segments, .. } = self.grouped(bandwidth);

@@ -95,14 +95,12 @@ impl Presentation for Plate {
 
     fn sections(&self, report: &SceneReport) -> Vec<Section> {
         let budget = section::budget::budget_html(&report.comparison);
-        let measured = section::measured::measured_html(report);
         let dents = section::dents::dents_html(report).unwrap_or_else(|error| html! { p { (error) } });
         vec![
             Section::new("impacts", "Impacts in series", section::impacts::impacts_html(report)),
             Section::new("landing", "Landing", section::flight::flights_html(report)),
             Section::new("dents", "Dents", dents),
             Section::new("budget", "Error budget", budget),
-            Section::new("measurement", "Measurement", measured),
         ]
     }
 

@@ -2,7 +2,7 @@
 
 use crate::format::{minus, prefixed, significant, with_unit, words};
 use crate::kinds::KINDS;
-use crate::measured::{AlignedRecord, Measured, MeasuredComparison};
+use crate::measured::{AlignedRecord, Channel, Measured, MeasuredComparison};
 use crate::plot::{ChartPanel, Series, chart};
 use crate::report::page::html::{detailed, scrolled};
 use crate::report::page::prose::prose;
@@ -51,6 +51,48 @@ pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
         ..ChartPanel::default()
     };
     Some(chart(&format!("{}: efficiency of repeated impacts", report.scene.name), &[panel]))
+}
+
+/// Most points of a curve that is drawn.
+const POINTS: usize = 800;
+
+/// The signals of the first record as they were measured and as they are compared, and below what the fits of the free flights leave.
+fn corrections(measured: &Measured) -> Option<String> {
+    let record = measured.records.first()?;
+    let thinned = |samples: &mut dyn ExactSizeIterator<Item = (f64, f64)>| -> Vec<(f64, f64)> {
+        let step = samples.len().div_ceil(POINTS).max(1);
+        samples.step_by(step).map(|(t, y)| (1e6 * t, y)).collect()
+    };
+    let named = |name: &str, points, marks| Series { name: name.into(), points, marks, ..Series::default() };
+    let over_time = |values: &[f64]| thinned(&mut record.time.iter().copied().zip(values.iter().copied()));
+    let panels = |(k, channel): (usize, &Channel)| {
+        let curve = KINDS.iter().flat_map(|kind| kind.curves()).find(|curve| curve.name == channel.quantity);
+        let unit = curve.map_or("1", |curve| curve.unit);
+        let signal = ChartPanel {
+            x_label: "Time in µs".into(),
+            y_label: format!("{} in {unit}", words(channel.quantity)),
+            series: vec![
+                named("as measured", over_time(&record.raw[k]), false),
+                named("compared", over_time(&channel.values), false),
+                named("left of the free flights", Vec::new(), true),
+            ],
+            ..ChartPanel::default()
+        };
+        let flights = thinned(&mut record.residuals[k].iter().copied());
+        let left = ChartPanel {
+            x_label: "Time in µs".into(),
+            y_label: format!("residual in {unit}"),
+            series: vec![
+                Series::default(),
+                Series::default(),
+                named("left of the free flights", flights, true),
+            ],
+            ..ChartPanel::default()
+        };
+        [signal, left]
+    };
+    let panels: Vec<ChartPanel> = record.signals.iter().enumerate().flat_map(panels).collect();
+    Some(chart(&format!("{}: what was removed", name(record)), &panels))
 }
 
 fn name(record: &AlignedRecord) -> String {
@@ -217,6 +259,12 @@ pub(crate) fn measured_html(report: &SceneReport) -> Markup {
             }
         }
         (table(alignment(measured)))
+        @if let Some(drawing) = corrections(measured) {
+            details {
+                summary { "Signals as measured and as compared, and residuals of the free flights (first record)" }
+                (PreEscaped(drawing))
+            }
+        }
         (table(metrics(measured)))
         @if let Some(rows) = validation(measured) { (table(rows)) p.soft { (VALIDATION) } }
         p.soft { (prose(measured.rule)) }
