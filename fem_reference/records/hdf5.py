@@ -30,8 +30,9 @@ def channels(path: Path) -> Iterator[list[Channel]]:
     In a file of MATLAB groups are structures, ``structure.name``, and matrices are transposed.
     Data that lie in other files are left out. Raises ValueError where there is too much.
     """
+    with path.open("rb") as stream:
+        record = _Record(is_matlab=stream.read(6) == b"MATLAB")
     with h5py.File(path, "r") as file:
-        record = _Record(any(MATLAB in each.attrs for each in file.values()))
         record.clocks_in((), file)
         # follows no links to other files
         file.visititems(record.visit)

@@ -28,6 +28,7 @@ def channels(path: Path) -> Iterator[list[Channel]]:
     _require_whole(path)
     # opened here, npTDMS reads no index file beside it, which could be another's
     with path.open("rb") as stream, TdmsFile.open(stream) as file:
+        _require_samples(file)
         found = [channel for group in file.groups() for channel in group.channels()]
         read = [channel for channel in found if len(channel) and is_numeric(channel.dtype)]
         yield timed([_channel(channel) for channel in read], {})
@@ -56,22 +57,39 @@ def _require_whole(path: Path) -> None:
             position += LEAD_IN + rest
 
 
+def _require_samples(file: Any) -> None:
+    """Refuse a file whose last segment has less samples than its headers state.
+
+    Raises:
+        ValueError: both numbers.
+    """
+    for name, status in (file.file_status.channel_statuses or {}).items():
+        stated, found = status.expected_length, status.read_length
+        if stated != found:
+            raise ValueError(f"channel {name} has {found} samples, its header states {stated}")
+
+
 def _channel(channel: Any) -> Channel:
     """A channel of npTDMS, with the clock of its waveform if it has one."""
-    properties = channel.properties
-    stated, over = properties.get("unit_string"), properties.get("wf_xunit_string")
-    second, interval = in_si(over), properties.get("wf_increment")
-    has_clock = second is not None and interval
-    start = properties.get("wf_start_offset", 0.0)
+    start, interval = _waveform(channel.properties)
     dated = is_dated(channel.dtype)
+    stated = channel.properties.get("unit_string") or unit_in(channel.name)
     return Channel(
         f"{channel.group_name}/{channel.name}",
         len(channel),
         channel.read_data,
-        "s" if dated else stated or unit_in(channel.name),
-        second * float(start) if has_clock else None,
-        second * float(interval) if has_clock else None,
+        "s" if dated else stated,
+        start,
+        interval,
         group=(channel.group_name,),
         label=channel.name,
         dated=dated,
     )
+
+
+def _waveform(properties: Any) -> tuple[float | None, float | None]:
+    """Start and interval in s, None where the properties do not state an interval of time."""
+    second, interval = in_si(properties.get("wf_xunit_string")), properties.get("wf_increment")
+    if second is None or not interval:
+        return None, None
+    return second * float(properties.get("wf_start_offset", 0.0)), second * float(interval)

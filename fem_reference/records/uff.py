@@ -33,7 +33,10 @@ def channels(path: Path) -> Iterator[list[Channel]]:
     """
     _require_whole(path)
     file = pyuff.UFF(str(path))
-    places = [place for place, kind in enumerate(file.get_set_types()) if kind == 58]
+    kinds = list(file.get_set_types())
+    if 0 in kinds:
+        raise ValueError(f"its data set {kinds.index(0) + 1} does not begin with a number")
+    places = [place for place, kind in enumerate(kinds) if kind == 58]
     heads = {place: file.read_sets(place, header_only=True) for place in places}
     wanted = {place: head for place, head in heads.items() if _is_over_time(head)}
     if heads and not wanted:
