@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import warnings
+from functools import partial
 from pathlib import Path
 
 from ..common.arguments import Study
-from ..common.errors import RunError, SceneError
+from ..common.errors import SceneError, SolverError
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,31 +18,27 @@ def _arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _columns(arguments: argparse.Namespace) -> None:
-    """Write the channels of a record.
+    """Write the channels of a record; the file appears when it is complete.
 
     Raises:
         SceneError: the record cannot be read, or it asks for more than this command reads.
         SolverError: the library of its format is missing, or the columns cannot be written.
     """
+    from .guard import guarded, seconds_for
+    from .record import convert
+
     file, out = arguments.file, arguments.out
-    if out.exists() and file.exists() and out.samefile(file):
-        raise SceneError(f"--out {out} is the record itself; choose another file")
-    from .formats import format_of, reader_of
-
-    form = format_of(file)
-    reader = reader_of(form, file)
-    from .write import write_columns
-
+    temporary = out.with_name(f".partial-{out.name}")
     try:
-        # what a library warns of is not for the user: it either reads the file or does not
-        with warnings.catch_warnings(action="ignore"), reader(file) as channels:
-            write_columns(out, form.name, channels)
-    except RunError:
-        raise
-    except Exception as error:
-        # libraries raise anything where a file is damaged
-        reason = str(error).strip().partition("\n")[0][:300] or type(error).__name__
-        raise SceneError(f"{file} cannot be read as {form}: {reason}") from error
+        if out.exists() and file.exists() and out.samefile(file):
+            raise SceneError(f"--out {out} is the record itself; choose another file")
+        out.parent.mkdir(parents=True, exist_ok=True)
+        guarded(partial(convert, file, temporary), file, seconds_for(file))
+        temporary.replace(out)
+    except OSError as error:
+        raise SolverError(f"{out} cannot be written: {error}") from error
+    finally:
+        temporary.unlink(missing_ok=True)
 
 
 COLUMNS = Study("columns of a record in a binary format", _arguments, _columns)

@@ -15,7 +15,7 @@ from .channel import Channel, as_floats, require_sizes
 
 
 def write_columns(out: Path, form: str, channels: list[Channel]) -> None:
-    """Write the channels of a record; ``out`` appears when it is complete.
+    """Write the channels of a record.
 
     Args:
         out: one line of JSON, which ends with a line feed, then little-endian doubles.
@@ -28,18 +28,13 @@ def write_columns(out: Path, form: str, channels: list[Channel]) -> None:
     """
     require_sizes(channels)
     head = {"format": form, "columns": [_described(channel) for channel in channels]}
-    temporary = out.with_name(f".partial-{out.name}")
     try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        with temporary.open("wb") as stream:
+        with out.open("wb") as stream:
             stream.write(json.dumps(head, allow_nan=False).encode() + b"\n")
             for channel in channels:
                 stream.write(np.ascontiguousarray(_samples(channel), dtype="<f8").data)
-        temporary.replace(out)
     except OSError as error:
         raise SolverError(f"{out} cannot be written: {error}") from error
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def _described(channel: Channel) -> dict[str, Any]:

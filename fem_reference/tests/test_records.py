@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
+import signal
 import struct
 import subprocess
 import sys
+import time
 import zlib
 from pathlib import Path
 from typing import Any
@@ -16,6 +19,8 @@ import pytest
 
 from fem_reference.common.errors import SceneError, SolverError
 from fem_reference.records.command import COLUMNS
+from fem_reference.records.guard import guarded
+from fem_reference.records.record import convert
 
 FORCE = 40.0 * np.sin(np.linspace(0.0, 3.0, 57)) ** 2
 VELOCITY = np.linspace(-1.5, 0.25, 57)
@@ -25,7 +30,7 @@ UNEVEN = np.cumsum(np.linspace(1e-6, 5e-6, 57))
 def read(file: Path) -> tuple[str, dict[str, Any], dict[str, Any]]:
     """Format, descriptions and numbers, by name; the place of a column is under ``place``."""
     out = file.with_name("columns")
-    COLUMNS.run(argparse.Namespace(file=file, out=out))
+    convert(file, out)
     head, _, data = out.read_bytes().partition(b"\n")
     document = json.loads(head)
     numbers = np.frombuffer(data, "<f8")
@@ -41,10 +46,9 @@ def read(file: Path) -> tuple[str, dict[str, Any], dict[str, Any]]:
 
 
 def refused(file: Path) -> str:
-    """The sentence that refuses a file; nothing is written."""
+    """The sentence that refuses a file."""
     with pytest.raises((SceneError, SolverError)) as caught:
-        COLUMNS.run(argparse.Namespace(file=file, out=file.with_name("columns")))
-    assert {path.name for path in file.parent.iterdir()} <= {file.name}
+        convert(file, file.with_name("columns"))
     message = str(caught.value)
     assert file.name in message and "\n" not in message
     return message
@@ -240,17 +244,20 @@ def test_matlab_that_is_cut_or_claims_too_much_is_refused(tmp_path: Path) -> Non
     assert "it has no channel of numbers" in refused(file)
 
 
-def test_a_bomb_in_a_structure_is_refused_before_it_is_read(tmp_path: Path) -> None:
+def test_a_bomb_in_a_structure_is_refused_before_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     scipy_io = pytest.importorskip("scipy.io")
+    monkeypatch.setattr("fem_reference.records.matlab.MOST_BYTES", 160_000_000)
     file = tmp_path / "a.mat"
     scipy_io.savemat(file, {"s": {"a": FORCE}}, do_compression=True)
     engine, million = zlib.compressobj(1), bytes(1 << 20)
     head = zlib.decompress(file.read_bytes()[136:])
-    packed = b"".join([engine.compress(head), *(engine.compress(million) for _ in range(1600))])
+    packed = b"".join([engine.compress(head), *(engine.compress(million) for _ in range(160))])
     packed += engine.flush()
     file.write_bytes(file.read_bytes()[:128] + struct.pack("<II", 15, len(packed)) + packed)
-    assert file.stat().st_size < 10e6
-    assert "its variables have more than 1600000000 bytes" in refused(file)
+    assert file.stat().st_size < 1e6
+    assert "its variables have more than 160000000 bytes" in refused(file)
 
 
 # --- HDF5 and MATLAB 7.3 -----------------------------------------------------------------------
@@ -470,14 +477,26 @@ def test_a_missing_library_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert "is a TDMS file; npTDMS reads it: pip install npTDMS" in refused(file)
 
 
-def test_the_command_ends_with_one_sentence(tmp_path: Path) -> None:
+def run(file: Path) -> subprocess.CompletedProcess[str]:
+    out = file.parent / "made" / "columns"
+    command = [sys.executable, "-m", "fem_reference", "columns", str(file), "--out", str(out)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_the_command_writes_all_or_one_sentence(tmp_path: Path) -> None:
+    wavfile = pytest.importorskip("scipy.io.wavfile")
     file = tmp_path / "a.wav"
     file.write_bytes(b"no record")
-    command = [sys.executable, "-m", "fem_reference", "columns", str(file), "--out", "columns"]
-    ended = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert ended.returncode == 3 and ended.stdout == ""
+    ended = run(file)
+    assert ended.returncode == 3 and ended.stdout == "" and not list((tmp_path / "made").iterdir())
     begins = r"it begins with 'no recor', such a file with 'RIFF'"
     assert ended.stderr == f"error: {file} is no WAV file: {begins}\n"
+    wavfile.write(file, 48_000, np.array([1, -2], np.int16))
+    ended = run(file)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "", "")
+    assert [path.name for path in (tmp_path / "made").iterdir()] == ["columns"]
+    data = (tmp_path / "made" / "columns").read_bytes().partition(b"\n")[2]
+    assert data == struct.pack("<2d", 2.0**-15, -(2.0**-14))
     file.unlink()
     assert "a.wav cannot be read: No such file" in refused(file)
 
@@ -488,3 +507,11 @@ def test_a_record_is_not_replaced_by_its_columns(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="is the record itself"):
         COLUMNS.run(argparse.Namespace(file=file, out=file))
     assert file.read_bytes() == b"precious"
+
+
+def test_a_library_that_crashes_or_does_not_end_is_survived(tmp_path: Path) -> None:
+    file = tmp_path / "a.h5"
+    with pytest.raises(SceneError, match=r"a\.h5 cannot be read: its library crashes .*-11"):
+        guarded(lambda: os.kill(os.getpid(), signal.SIGSEGV), file, 30.0)
+    with pytest.raises(SceneError, match=r"a\.h5 cannot be read: its library does not end"):
+        guarded(lambda: time.sleep(60.0), file, 0.2)
