@@ -19,9 +19,10 @@ from .common.progress import Progress
 from .common.settings import SOLVERS
 from .flight import FLIGHTS
 from .kinds import commands_of, studies
+from .records.command import COLUMNS
 
 RESOLUTION_NAMES = ("coarse", "paper", "fine")
-STUDIES = {**studies(), "flights": FLIGHTS}
+STUDIES = {**studies(), "flights": FLIGHTS, "columns": COLUMNS}
 
 
 def _parser() -> argparse.ArgumentParser:
