@@ -51,8 +51,7 @@ class Part:
     def behind(self) -> list[float]:
         """Where the inner body lies."""
         return [
-            p + self.wall * direction
-            for p, direction in zip(self.struck, self.inward, strict=True)
+            p + self.wall * direction for p, direction in zip(self.struck, self.inward, strict=True)
         ]
 
 
@@ -63,7 +62,9 @@ def _uniform(draw: random.Random, low: float, high: float) -> float:
 def box(draw: random.Random) -> Part:
     """A box that is open below; its rim is held, its lid is struck."""
     wall = _uniform(draw, 1.0, 3.0)
-    length, width, height = (round(wall * draw.uniform(*span), 3) for span in ((5, 9), (5, 8), (3, 6)))
+    length, width, height = (
+        round(wall * draw.uniform(*span), 3) for span in ((5, 9), (5, 8), (3, 6))
+    )
     away = 2.0 * wall
     struck = (_uniform(draw, away, length - away), _uniform(draw, away, width - away), height)
     fillet, held = round(wall * draw.uniform(1.1, 1.6), 3), (0.5 * wall, 0.5 * width, 0.0)
@@ -74,10 +75,16 @@ def bracket(draw: random.Random) -> Part:
     """An angle; the underside of its foot is held, its wall is struck."""
     wall = _uniform(draw, 1.0, 3.0)
     foot = round(wall * draw.uniform(0.8, 2.0), 3)
-    length, width, height = (round(wall * draw.uniform(*span), 3) for span in ((5, 9), (4, 8), (6, 9)))
+    length, width, height = (
+        round(wall * draw.uniform(*span), 3) for span in ((5, 9), (4, 8), (6, 9))
+    )
     fillet = round(wall * draw.uniform(0.7, 1.6), 3)
     low = foot + fillet + 0.5 * wall
-    struck = (0.0, _uniform(draw, 1.5 * wall, width - 1.5 * wall), _uniform(draw, low, height - wall))
+    struck = (
+        0.0,
+        _uniform(draw, 1.5 * wall, width - 1.5 * wall),
+        _uniform(draw, low, height - wall),
+    )
     held = (0.5 * length, 0.5 * width, 0.0)
     return Part("bracket", (length, width, height), wall, foot, fillet, struck, (1, 0, 0), held)
 
@@ -103,7 +110,9 @@ def write_part(part: Part, path: Path) -> None:
             foot = occ.addBox(0, 0, 0, length, width, part.foot)
             back = occ.addBox(0, 0, 0, wall, width, height)
             solid = occ.fuse([(3, foot)], [(3, back)])[0][0][1]
-            corner = _edges((wall - 0.1, -1, part.foot - 0.1), (wall + 0.1, width + 1, part.foot + 0.1))
+            corner = _edges(
+                (wall - 0.1, -1, part.foot - 0.1), (wall + 0.1, width + 1, part.foot + 0.1)
+            )
             occ.fillet([solid], corner, [part.fillet])
         occ.synchronize()
         gmsh.write(str(path))

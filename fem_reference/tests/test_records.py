@@ -511,7 +511,7 @@ def test_a_record_is_not_replaced_by_its_columns(tmp_path: Path) -> None:
 
 def test_a_library_that_crashes_or_does_not_end_is_survived(tmp_path: Path) -> None:
     file = tmp_path / "a.h5"
-    with pytest.raises(SceneError, match=r"a\.h5 cannot be read: its library crashes .*-11"):
+    with pytest.raises(SceneError, match=r"a\.h5 cannot be read: its library crashes"):
         guarded(lambda: os.kill(os.getpid(), signal.SIGSEGV), file, 30.0)
     with pytest.raises(SceneError, match=r"a\.h5 cannot be read: its library does not end"):
         guarded(lambda: time.sleep(60.0), file, 0.2)

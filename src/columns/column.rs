@@ -157,6 +157,10 @@ fn split_heading(heading: &str) -> Result<(&str, Option<&str>), String> {
         if let Some((name, unit)) = heading.split_once(open) {
             let unit = unit.trim_end().strip_suffix(close);
             let unit = unit.ok_or_else(|| format!("column `{heading}`: `{close}` is missing"))?;
+            // `pair(1)` is the first column of a matrix
+            if unit.trim().parse::<f64>().is_ok() {
+                break;
+            }
             return Ok((name.trim(), Some(unit.trim())));
         }
     }
