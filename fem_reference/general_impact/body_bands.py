@@ -59,12 +59,18 @@ def _uniform(draw: random.Random, low: float, high: float) -> float:
     return round(draw.uniform(low, high), 3)
 
 
+def _sizes(
+    draw: random.Random, wall: float, *spans: tuple[float, float]
+) -> tuple[float, float, float]:
+    """Length, width and height between multiples of the wall."""
+    length, width, height = (round(wall * draw.uniform(*span), 3) for span in spans)
+    return length, width, height
+
+
 def box(draw: random.Random) -> Part:
     """A box that is open below; its rim is held, its lid is struck."""
     wall = _uniform(draw, 1.0, 3.0)
-    length, width, height = (
-        round(wall * draw.uniform(*span), 3) for span in ((5, 9), (5, 8), (3, 6))
-    )
+    length, width, height = _sizes(draw, wall, (5, 9), (5, 8), (3, 6))
     away = 2.0 * wall
     struck = (_uniform(draw, away, length - away), _uniform(draw, away, width - away), height)
     fillet, held = round(wall * draw.uniform(1.1, 1.6), 3), (0.5 * wall, 0.5 * width, 0.0)
@@ -75,9 +81,7 @@ def bracket(draw: random.Random) -> Part:
     """An angle; the underside of its foot is held, its wall is struck."""
     wall = _uniform(draw, 1.0, 3.0)
     foot = round(wall * draw.uniform(0.8, 2.0), 3)
-    length, width, height = (
-        round(wall * draw.uniform(*span), 3) for span in ((5, 9), (4, 8), (6, 9))
-    )
+    length, width, height = _sizes(draw, wall, (5, 9), (4, 8), (6, 9))
     fillet = round(wall * draw.uniform(0.7, 1.6), 3)
     low = foot + fillet + 0.5 * wall
     struck = (
