@@ -132,7 +132,7 @@ def draw_scene(seed: int, folder: Path) -> tuple[dict[str, Any], Path]:
     steel = {"name": "steel", "youngs_modulus": 210e9, "poisson_ratio": 0.3, "density": 7780.0}
 
     def sphere() -> dict[str, Any]:
-        return {"kind": "sphere", "radius": _uniform(draw, 2.0, 6.0) * MM, "material": steel}
+        return {"kind": "sphere", "radius": _uniform(draw, 3.0, 8.0) * MM, "material": steel}
 
     metres = [[MM * x for x in place] for place in (part.held, part.struck, part.behind())]
     body = {
@@ -149,7 +149,7 @@ def draw_scene(seed: int, folder: Path) -> tuple[dict[str, Any], Path]:
         "kind": "impact",
         "scene_hash": f"{seed:x}",
         "settings_hash": "0",
-        "outer": sphere() | {"speed": round(10.0 ** draw.uniform(-1.0, 0.3), 3)},
+        "outer": sphere() | {"speed": round(10.0 ** draw.uniform(-0.5, 0.5), 3)},
         "inner": sphere(),
         "body": body,
         "run": {"end_time": None},

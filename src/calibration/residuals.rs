@@ -141,6 +141,8 @@ mod tests {
             noise: vec![0.0],
             ends: vec![f64::INFINITY],
             signals: vec![Channel { quantity, values }],
+            raw: Vec::new(),
+            residuals: Vec::new(),
             time,
         };
         let signals = Signals::of(&[record], 100e-6, (BANDWIDTH, speed));

@@ -163,11 +163,11 @@ mod tests {
         let fast = ChannelClock::Even([-1e-5, 1e-6]);
         let slow = ChannelClock::Even([-2e-5, 4e-6]);
         let channels = [
-            channel("outer_velocity", "mm/s", fast, 100, |k| k),
+            channel("LDV/outer_velocity", "mm/s", fast, 100, |k| k),
             channel("LDV 2", "V", slow, 60, |k| 4.0 * k),
             channel("trigger", "V", ChannelClock::Unknown, 3, |k| k),
         ];
-        let map = "[columns]\nouter_velocity = { column = \"outer_velocity\" }\n\
+        let map = "[columns]\nouter_velocity = { column = \"LDV/outer_velocity\" }\n\
                    inner_velocity = { column = 2, sensitivity = \"0.5 m/s/V\", delay = \"3 us\", sign = -1 }";
         let columns = read(&channels, map).expect("a record");
         assert!((columns.time[0] + 1e-5).abs() < 1e-18);
@@ -182,7 +182,9 @@ mod tests {
     fn times_in_a_channel_are_in_its_unit_and_increase() {
         let mut channels = vec![
             channel("time", "us", ChannelClock::Unknown, 50, |k| k),
-            channel("inner_velocity", "", ChannelClock::Channel(0), 50, |k| k),
+            // groups of a file stand before the name
+            channel("vibrometer/inner_velocity", "", ChannelClock::Channel(0), 50, |k| k),
+            channel("pair(1)", "", ChannelClock::Channel(0), 50, |k| k),
         ];
         assert!((read(&channels, "").expect("a record").time[7] - 7e-6).abs() < 1e-18);
         // both states of an event: the later one stays

@@ -170,6 +170,14 @@ fn split_heading(heading: &str) -> Result<(&str, Option<&str>), String> {
     })
 }
 
+/// The name of a curve or of the time without the groups before it that binary formats have; any other `name` as it is.
+fn without_groups<'n>(name: &'n str, known: &[Curve]) -> &'n str {
+    let last = name.rsplit(['/', '.']).next().unwrap_or(name).trim();
+    let is_known =
+        known.iter().any(|curve| curve.name == last) || TIMES.contains(&last.to_lowercase().as_str());
+    if is_known { last } else { name }
+}
+
 /// The unit as this program writes it.
 fn spelled(unit: &str) -> &str {
     let lower = unit.to_lowercase();
@@ -195,6 +203,7 @@ pub(super) fn by_heading(titles: &Titles, known: &[Curve]) -> Result<Vec<Column>
     let mut found: Vec<Column> = Vec::new();
     for (index, heading) in titles.headings.iter().enumerate() {
         let (name, _) = split_heading(heading)?;
+        let name = without_groups(name, known);
         let lower = name.to_lowercase();
         let is_time = TIMES.contains(&lower.as_str());
         let Some((name, measures)) =

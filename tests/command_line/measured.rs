@@ -65,6 +65,28 @@ fn compare_takes_measured_files_as_a_third_comparator() {
     assert!(fs::read_to_string(out.join("comparison.md")).unwrap().contains("### Measurement"));
 }
 
+/// Models and measurement need no reference: a store without one, and no report.
+#[test]
+fn measured_files_are_compared_with_the_models_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = measured(folder.path(), "record.csv", 5.0);
+    let scene = include_str!("../../scenes/scaled-plate-r10.toml").replace("scaled-plate-r10", "mine");
+    let scene = file(folder.path(), "mine.toml", &scene.split("# The gate.").next().unwrap());
+    let out = folder.path().join("report");
+    let arguments =
+        ["compare", text(&scene), "--models", "A,C", "--measured", text(&record), "--out", text(&out)];
+    let document = json(&[&arguments[..], &["--json"]].concat());
+    let found = &document["measured"];
+    assert_eq!((&found["aligned_with"], &document["scene"]), (&"C".into(), &"mine".into()));
+    assert!((found["records"][0]["efficiency"].as_f64().unwrap() - 0.6946).abs() < 0.001, "{found}");
+    let ended = impactcheck(&arguments);
+    assert_eq!(ended.status, 0, "{}", ended.error);
+    assert!(flat(&ended.error).contains(&flat("no report page")) && !out.join("index.html").exists());
+    let line =
+        |name: &str| ended.out.lines().find(|line| line.trim_start().starts_with(name)).unwrap().to_owned();
+    assert!(line("C ").contains("within") && line("A ").contains("model error shown"), "{}", ended.out);
+}
+
 #[test]
 fn bad_measured_files_end_with_2_or_3_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();

@@ -5,7 +5,8 @@ use impactcheck::kinds::plate_impact::PlateImpact;
 use impactcheck::kinds::plate_impact::approach;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::measured::{
-    AlignedRecord, BANDWIDTH, Channel, ContactEnds, Filtered, Record, Series, Speed, align, compare,
+    AlignedRecord, BANDWIDTH, Channel, ContactEnds, Filtered, REFERENCE, Record, Series, Speed, align,
+    compare,
 };
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::result::Outcome;
@@ -209,13 +210,23 @@ fn models_have_the_same_metrics_and_a_series_has_mean_and_standard_deviation() {
         .collect();
     let reduced = [model(&scene, Model::A), model(&scene, Model::C)];
     let certain = Default::default();
-    let found = compare(&scene, &records, &reference, &reduced, (BANDWIDTH, Speed::Scene), &certain).unwrap();
+    let partners = [(REFERENCE, &reference), ("A", &reduced[0]), ("C", &reduced[1])];
+    let found = compare(&scene, &records, &partners, (BANDWIDTH, Speed::Scene), &certain).unwrap();
     // another program's result has no eigenfrequency
     let mut imported = reference.clone();
     *imported.summary.quantities.value_mut("first_frequency").unwrap() = None;
     let with_imported =
-        compare(&scene, &records, &imported, &[], (BANDWIDTH, Speed::Scene), &certain).unwrap();
+        compare(&scene, &records, &[(REFERENCE, &imported)], (BANDWIDTH, Speed::Scene), &certain).unwrap();
     assert_eq!(with_imported.records, found.records);
+    // without a reference the first model is what the records are laid over, and E has its band
+    let alone = compare(&scene, &records, &partners[1..], (BANDWIDTH, Speed::Scene), &certain).unwrap();
+    assert_eq!((alone.aligned_with.as_str(), alone.partners.len()), ("A", 2));
+    let of_c =
+        &compare(&scene, &records, &partners[2..], (BANDWIDTH, Speed::Scene), &certain).unwrap().partners[0];
+    let assessed = of_c.validation.as_ref().unwrap();
+    assert!(assessed.error.abs() < 2.0 * assessed.u_val && assessed.parts.u_input == 0.0, "{assessed:?}");
+    let of_a = alone.partners[0].validation.as_ref().unwrap();
+    assert!(of_a.error.abs() > 2.0 * of_a.u_val, "{of_a:?}");
     let series = found.efficiency.unwrap();
     assert_eq!(series, Series::of(series.values.clone()).unwrap());
     assert!(series.count == 3 && (series.mean - truth.summary.value("efficiency").unwrap()).abs() < 0.005);
