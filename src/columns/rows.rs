@@ -83,11 +83,11 @@ impl<'t> RowsSoFar<'t> {
     /// The number in a cell, not a number where it is missing.
     fn number(&self, row: &csv::StringRecord, index: usize, name: &str, line: usize) -> Result<f64, String> {
         let cell = row.get(index).unwrap_or_default().trim();
-        if is_missing(cell) {
-            return Ok(f64::NAN);
+        match layout::value(cell, self.decimal) {
+            Some(number) if number.is_finite() => Ok(number),
+            _ if is_missing(cell) => Ok(f64::NAN),
+            _ => Err(format!("line {line}: {name} is `{cell}`, not a finite number")),
         }
-        let number = layout::value(cell, self.decimal).filter(|number| number.is_finite());
-        number.ok_or_else(|| format!("line {line}: {name} is `{cell}`, not a finite number"))
     }
 
     fn add(&mut self, row: &csv::StringRecord, line: usize) -> Result<(), String> {

@@ -54,6 +54,9 @@ pub(super) fn columns(time: Vec<f64>, signals: Vec<Signal>, fewest: usize) -> Re
 
 /// Fills what is missing of `values` by straight lines; where that was.
 fn filled(name: &str, time: &[f64], values: &mut [f64]) -> Result<Vec<[f64; 2]>, String> {
+    if values.iter().all(|value| value.is_finite()) {
+        return Ok(Vec::new());
+    }
     let known: Vec<usize> = (0..values.len()).filter(|k| values[*k].is_finite()).collect();
     let [Some(&first), Some(&last)] = [known.first(), known.last()] else {
         return Err(format!("{name} has no value"));

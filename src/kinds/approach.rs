@@ -11,4 +11,6 @@ pub struct Approach {
     pub masses: [f64; 2],
     /// Whether the outer body has no energy but that of its motion, and is not driven.
     pub outer_is_rigid: bool,
+    /// Whether the contact alone acts on the inner body: no fluid does.
+    pub inner_is_free: bool,
 }

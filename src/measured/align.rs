@@ -7,6 +7,7 @@ use super::flight::{FEWEST, FreeFlight, FreeFlightFit};
 use super::judge::{JudgedRecord, Seen};
 use super::record::{Channel, Record};
 use super::screen::screened;
+use super::shortened::shortened;
 use super::structure::Disturbance;
 use crate::error::{Error, Result};
 use crate::format::quantity;
@@ -148,6 +149,7 @@ pub fn align(
     (bandwidth, speed): (f64, Speed),
 ) -> Result<AlignedRecord> {
     let (record, findings) = screened(record, bandwidth);
+    let record = shortened(record, bandwidth, ends.outer.max(ends.inner));
     Alignment { record, model, ends, approach, bandwidth, speed }.run(findings)
 }
 

@@ -89,6 +89,7 @@ impl Alignment<'_> {
         let trusted = of("outer").filter(|_| self.speed == Speed::Measured);
         let initial_error = trusted.and_then(|seen| seen.errors).map_or(0.0, |errors| errors.before);
         let [inner, outer] = ["inner", "outer"].map(|body| of(body).and_then(Seen::after));
+        let inner = inner.or_else(|| self.pushed(shift, seen));
         let masses = self.approach.masses;
         // kinetic energy over that of the outer body before the impact, and the half width of its 95 % interval
         let share = |mass: f64, (velocity, error): (f64, f64)| {
@@ -107,6 +108,31 @@ impl Alignment<'_> {
             efficiency,
             findings,
         })
+    }
+
+    /// Velocity of the inner body after the impact with its standard error, by the impulse of the force on it; `None` without its force,
+    /// or if something else acts on it too.
+    fn pushed(&self, shift: f64, seen: &[Seen]) -> Option<(f64, f64)> {
+        let force = seen.iter().find(|seen| seen.correction.quantity == "inner_force")?;
+        let errors = force.errors.filter(|errors| errors.slope.is_finite() && self.approach.inner_is_free)?;
+        let channel = self.record.channels.iter().find(|c| c.quantity == "inner_force")?;
+        let contact = self.contact("inner_force");
+        let time = || self.record.time.iter().map(|t| t - shift);
+        let points: Vec<(f64, f64)> = time()
+            .zip(&channel.values)
+            .filter(|(t, _)| (contact.start..contact.end).contains(t))
+            .map(|(t, y)| (t, y - force.taken_out(t)))
+            .collect();
+        let impulse: f64 = points.windows(2).map(|p| 0.5 * (p[1].0 - p[0].0) * (p[1].1 + p[0].1)).sum();
+        // of the offset, of the drift, and of the noise over the contact: by its density, as the offset's error shows it over the free flight
+        let length = contact.end - contact.start;
+        let drift = errors.slope * 0.5 * (contact.end.powi(2) - contact.start.powi(2));
+        let before = &force.free.before;
+        let flight = before.last().map_or(0.0, |last| last.0 - before[0].0);
+        let noise = errors.before * (flight * length).sqrt();
+        let error = (errors.before * length).hypot(drift).hypot(noise);
+        let mass = self.approach.masses[1];
+        Some((self.approach.inner_velocity - impulse / mass, error / mass))
     }
 
     /// Begin and end of the record on its own clock, s.

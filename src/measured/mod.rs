@@ -16,6 +16,7 @@ pub mod noise;
 mod record;
 pub(crate) mod screen;
 mod shift;
+mod shortened;
 mod structure;
 
 pub use align::{AlignedRecord, ChannelCorrection, ContactEnds, Speed, align, align_all};

@@ -44,11 +44,9 @@ pub(super) fn screened(record: &Record, bandwidth: f64) -> (Record, Vec<Finding>
         .iter()
         .map(|channel| Channel { quantity: channel.quantity, values: channel.values[keep.clone()].to_vec() });
     let record = Record {
-        file: record.file.clone(),
         time: record.time[keep.clone()].to_vec(),
         channels: channels.collect(),
-        gaps: record.gaps.clone(),
-        integrals: record.integrals.clone(),
+        ..record.without_samples()
     };
     findings.extend(record.gaps.iter().map(|(name, [from, to])| {
         let effect = format!(
@@ -155,7 +153,11 @@ fn clipped(time: &[f64], channel: &Channel) -> Option<Finding> {
 /// Distance of samples from which on something is missing, s.
 fn gap(time: &[f64], bandwidth: f64) -> f64 {
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
+    if steps.is_empty() {
+        return f64::INFINITY;
+    }
+    let middle = steps.len() / 2;
+    let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
     // several usual steps, and long enough to hide something the instrument would show
-    steps.get(steps.len() / 2).map_or(f64::INFINITY, |usual| (5.0 * usual).max(1.0 / bandwidth))
+    (5.0 * usual).max(1.0 / bandwidth)
 }

@@ -201,6 +201,27 @@ fn one_signal_is_enough_and_missing_free_flight_is_reported() {
     assert!(cut.efficiency.is_none() && cut.inner_velocity_final.is_none(), "no free flight to read it from");
 }
 
+/// A force cell behind the inner body tells its velocity by the impulse, with a band that holds.
+#[test]
+fn the_force_on_the_inner_body_shows_the_efficiency() {
+    let (scene, setup) = scene("scaled-plate-r10");
+    let truth = model(&scene, Model::C);
+    let expected = truth.summary.value("efficiency").unwrap();
+    let misses = (1..=40).map(|seed| {
+        let with = Disturbance { seed, noise: 0.01, offset: 0.05, drift: 0.02, ..DISTURBED };
+        let found =
+            aligned(&record(&truth, &["outer_velocity", "inner_force"], with), &truth, &setup, Speed::Scene);
+        let (efficiency, band) = (found.efficiency.unwrap(), found.efficiency_uncertainty.unwrap());
+        assert!(band < 0.02, "{efficiency} +- {band}");
+        (efficiency - expected).abs() / band
+    });
+    let misses: Vec<f64> = misses.collect();
+    let within = misses.iter().filter(|miss| **miss <= 1.0).count();
+    // 38 of 40 are 95 %; a normal error is beyond twice its band in 1 of 20 000
+    assert!(within >= 34 && misses.iter().all(|miss| *miss < 2.0), "{misses:?}");
+    assert!(misses.iter().any(|miss| *miss > 0.3), "the bands are too wide: {misses:?}");
+}
+
 #[test]
 fn models_have_the_same_metrics_and_a_series_has_mean_and_standard_deviation() {
     let (scene, _) = scene("scaled-plate-r10");

@@ -81,5 +81,6 @@ pub fn approach(setup: &PlateImpact) -> Approach {
         inner_velocity: inner.speed,
         masses: [outer.shape.mass(&outer.material), inner.shape.mass(&inner.material)],
         outer_is_rigid: matches!(outer.shape, Shape::Sphere { .. } | Shape::Compact { .. }),
+        inner_is_free: setup.fluid.is_none(),
     }
 }
