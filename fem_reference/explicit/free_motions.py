@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -61,7 +62,17 @@ class FreeMotions:
         return force
 
 
-def static_shape(loop: Loop, body: int, load: Floats, floating: FreeMotions) -> Floats:
+Precondition = Callable[[Floats], Floats]
+"""See `conjugate_gradients`."""
+
+
+def static_shape(
+    loop: Loop,
+    body: int,
+    load: Floats,
+    floating: FreeMotions,
+    precondition: Precondition | None = None,
+) -> Floats:
     """Displacement (3 n,) of a body under a load (3 n,), rigid motions apart , m."""
     free = free_components(loop, body)
     tolerance = RELIEVED_TOLERANCE if floating.motions else CG_TOLERANCE
@@ -72,11 +83,18 @@ def static_shape(loop: Loop, body: int, load: Floats, floating: FreeMotions) -> 
             free,
             floating.out_of_force,
             tolerance=tolerance,
+            precondition=precondition,
         )
     )
 
 
-def flexibility(loop: Loop, body: int, load: Floats, floating: FreeMotions | None = None) -> float:
+def flexibility(
+    loop: Loop,
+    body: int,
+    load: Floats,
+    floating: FreeMotions | None = None,
+    precondition: Precondition | None = None,
+) -> float:
     """Static flexibility p^T K^-1 p of a body, of the part modelled, m/N.
 
     Args:
@@ -84,7 +102,8 @@ def flexibility(loop: Loop, body: int, load: Floats, floating: FreeMotions | Non
         body: number of the elastic body.
         load: (3 n,) p, whose components sum up to a force of 1 N.
         floating: its free motions, if they are known.
+        precondition: see `conjugate_gradients`.
     """
     floating = floating or FreeMotions(loop, body)
     relieved = floating.out_of_force(load * free_components(loop, body))
-    return loop.dot(relieved, static_shape(loop, body, load, floating))
+    return loop.dot(relieved, static_shape(loop, body, load, floating, precondition))

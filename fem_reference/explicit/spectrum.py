@@ -59,22 +59,25 @@ def conjugate_gradients(
     project: Callable[[Floats], Floats] = lambda x: x,
     start: Floats | None = None,
     tolerance: float = CG_TOLERANCE,
+    precondition: Callable[[Floats], Floats] | None = None,
 ) -> Floats:
-    """K^-1 load on the components where ``free`` is 1, preconditioned by the diagonal.
+    """K^-1 load on the components where ``free`` is 1.
 
-    ``project`` takes the motions out of a residual that cost no energy.
+    ``project`` takes the motions out of a residual that cost no energy; ``precondition`` is
+    symmetric, by default the inverse of the diagonal.
 
     Raises:
         SolverError: no convergence.
     """
     weight = free / loop.diagonal
+    improved = precondition or (lambda residual: weight * residual)
     x = np.zeros_like(load) if start is None else start * free
     residual = project(load * free - free * loop.product(x))
-    limit = tolerance * math.sqrt(loop.dot(load * free, weight * load))
+    limit = tolerance * math.sqrt(loop.dot(load * free, improved(load * free)))
     direction = np.zeros_like(load)
     rho = 1.0
     for _ in range(CG_STEPS):
-        scaled = weight * residual
+        scaled = improved(residual)
         following = loop.dot(residual, scaled)
         if math.sqrt(following) <= limit:
             return x
@@ -169,12 +172,14 @@ def first_frequency(
     tolerance: float = 1e-6,
     start: Floats | None = None,
     floating: Floating | None = None,
+    precondition: Callable[[Floats], Floats] | None = None,
 ) -> float:
     """Lowest eigenfrequency of a body, Hz, by inverse iteration from the motion along ``axis``.
 
     A body that is free along ``axis`` keeps that motion out of the iteration. ``start`` (3 n,) is
     another motion to begin with, where the lowest mode may not contain that along ``axis``;
-    ``floating`` the rigid motions, where there may be others than a force along it causes.
+    ``floating`` the rigid motions, where there may be others than a force along it causes;
+    ``precondition`` as of `conjugate_gradients`.
     """
     free = free_components(loop, body)
     mass = np.repeat(loop.mass, 3)
@@ -198,6 +203,7 @@ def first_frequency(
                 balanced,
                 start=x / value if value else None,
                 tolerance=1e-4,
+                precondition=precondition,
             )
         )
         squared = loop.dot(x, loop.product(x) * free) / loop.dot(x, mass * x * free)

@@ -11,14 +11,14 @@ from ..common.arrays import Floats
 from ..explicit.energies import Energies
 from ..explicit.free_motions import FreeMotions, flexibility, static_shape
 from ..explicit.loop import Loop
-from ..explicit.spectrum import first_frequency
+from ..explicit.spectrum import first_frequency, free_components
 from ..impact.ending import Approach, Ending
+from ..solid.two_level import TwoLevel
 from .model import STRUCK, ImpactModel
 from .motion import Motion
 
-FREQUENCY_TOLERANCE = 2e-5
-"""Relative change of the square of the first frequency at which its iteration ends: bodies with
-several frequencies close together take long otherwise."""
+FREQUENCY_TOLERANCE = 2e-6
+"""Relative change of the square of the first frequency at which its iteration ends."""
 
 
 class Bodies:
@@ -26,7 +26,14 @@ class Bodies:
 
     def __init__(self, loop: Loop, made: ImpactModel) -> None:
         self.loop, self.made = loop, made
-        self.floating = [FreeMotions(loop, k) for k in range(len(made.model.elastic))]
+        model = made.model
+        self.floating = [FreeMotions(loop, k) for k in range(len(model.elastic))]
+        self.precondition = [
+            TwoLevel(loop, body.mesh, body.material, int(model.first[k]), free_components(loop, k))
+            if body.mesh.order == 2
+            else None
+            for k, body in enumerate(model.elastic)
+        ]
 
     def rigid(self, load: Floats, vector: Floats, body: int) -> float:
         """What the rigid motion in a displacement or velocity (3 n,) comes to under a load."""
@@ -42,13 +49,24 @@ class Bodies:
         """Lowest frequency of what is struck that the contacts excite, Hz."""
         floating = self.floating[STRUCK]
         shapes = [
-            static_shape(self.loop, STRUCK, side.patch.load(self.loop, STRUCK), floating)
+            static_shape(
+                *(self.loop, STRUCK, side.patch.load(self.loop, STRUCK)),
+                *(floating, self.precondition[STRUCK]),
+            )
             for side in self.made.sides
         ]
-        start = np.sum(shapes, axis=0)
         return first_frequency(
-            self.loop, STRUCK, tolerance=FREQUENCY_TOLERANCE, start=start, floating=floating
+            self.loop,
+            STRUCK,
+            tolerance=FREQUENCY_TOLERANCE,
+            start=np.sum(shapes, axis=0),
+            floating=floating,
+            precondition=self.precondition[STRUCK],
         )
+
+    def flexibility(self, body: int, load: Floats) -> float:
+        """Static flexibility of a body under a unit load, m/N."""
+        return flexibility(self.loop, body, load, self.floating[body], self.precondition[body])
 
 
 @dataclass(frozen=True)
@@ -71,12 +89,7 @@ def softness(bodies: Bodies) -> list[list[Softness]]:
         if side.own is not None and side.body is not None:
             patches.append((side.body, side.own))
         loads = [(body, patch.load(loop, body)) for body, patch in patches]
-        found.append(
-            [
-                Softness(body, load, flexibility(loop, body, load, bodies.floating[body]))
-                for body, load in loads
-            ]
-        )
+        found.append([Softness(body, load, bodies.flexibility(body, load)) for body, load in loads])
     return found
 
 
