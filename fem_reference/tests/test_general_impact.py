@@ -17,6 +17,7 @@ from fem_reference.common.arrays import Floats
 from fem_reference.common.errors import SceneError
 from fem_reference.common.fenicsx import alone
 from fem_reference.explicit.free_motions import FreeMotions, flexibility
+from fem_reference.general_impact.ending import Bodies
 from fem_reference.general_impact.estimate import Sizes, estimate
 from fem_reference.general_impact.model import ImpactModel, impact_model
 from fem_reference.general_impact.result import quantities
@@ -160,6 +161,29 @@ def test_rigid_motions_of_a_free_body(made: tuple[Scene, ImpactModel]) -> None:
     expected = (np.array([1.0, 2.0, 3.0]) + np.cross(axis, place)) @ side.strike.normal
     assert moved == pytest.approx(float(expected), abs=1e-4)
     assert flexibility(loop, 0, load, floating) > 0.0
+
+
+@pytest.mark.parametrize("body", [0, 1])
+def test_two_levels_solve_what_the_diagonal_solves_in_fewer_steps(
+    made: tuple[Scene, ImpactModel], body: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A free body, and a free sphere: the same flexibility by a fraction of the products."""
+    loop = make_loop(made[1].model, alone())
+    side, bodies = made[1].sides[0], Bodies(loop, made[1])
+    patch = side.patch if body == 0 else side.own
+    assert patch is not None
+    load, products, product = patch.load(loop, body), 0, loop.product
+
+    def counted(x: Floats) -> Floats:
+        nonlocal products
+        products += 1
+        return product(x)
+
+    monkeypatch.setattr(loop, "product", counted)
+    by_diagonal, steps = flexibility(loop, body, load, bodies.floating[body]), products
+    products = 0
+    assert bodies.flexibility(body, load) == pytest.approx(by_diagonal, rel=1e-6)
+    assert 3 * products < steps
 
 
 def test_a_free_body_keeps_the_momentum(
