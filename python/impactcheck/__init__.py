@@ -121,6 +121,7 @@ def compare(
     measured: Sequence[str | PathLike[str]] = (),
     bandwidth: str | float | None = None,
     speed: Literal["scene", "measured"] | None = None,
+    record_map: str | PathLike[str] | None = None,
 ) -> Comparison:
     """Compare models with the reference of each scene, and judge them by its tolerances.
 
@@ -134,17 +135,19 @@ def compare(
         compute: As in :func:`reference`.
         allow_external: Whether the programs that scenes name may run.
         out: Folder of the report; none is written without.
-        measured: Histories of a laser vibrometer (CSV, units in the heading), repeated impacts of
-            the one scene; what they show is :meth:`Comparison.measured`.
+        measured: Records of instruments, repeated impacts of the one scene; what they show is
+            :meth:`Comparison.measured`. The channels of one impact may be in several files:
+            "outer.csv+inner.csv".
         bandwidth: Of the instrument, with unit or in Hz; by default "100 kHz". The models' curves
             are filtered to it.
         speed: Source of the outer body's speed before the impact: the scene (default), or the
             record, if its signal has no offset ("measured").
+        record_map: File that says which column of a record is what; by default that is inferred.
 
     Raises:
         Error: If a reference is missing, a model fails or a record can't be aligned.
     """
-    how = (None if bandwidth is None else str(bandwidth), speed)
+    how = (None if bandwidth is None else str(bandwidth), speed, record_map)
     document, figures = _core.compare(
         scenes, models, resolution, compute, allow_external, out, measured, how
     )

@@ -72,7 +72,7 @@ def compare(
     allow_external: bool,
     out: str | PathLike[str] | None,
     measured: Sequence[str | PathLike[str]],
-    how: tuple[str | None, str | None],
+    how: tuple[str | None, str | None, str | PathLike[str] | None],
 ) -> tuple[str, list[str]]: ...
 def optimise(
     scene: Scene,

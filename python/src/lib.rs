@@ -103,14 +103,24 @@ fn compare(
     allow_external: bool,
     out: Option<PathBuf>,
     measured: Vec<PathBuf>,
-    how: (Option<String>, Option<String>),
+    how: (Option<String>, Option<String>, Option<PathBuf>),
 ) -> PyResult<(String, Vec<String>)> {
-    let (bandwidth, speed) = how;
+    let (bandwidth, speed, record_map) = how;
     let speed = speed.map(|name| name.parse()).transpose().map_err(usage)?;
     let models =
         models.iter().map(|name| name.parse()).collect::<std::result::Result<_, _>>().map_err(usage)?;
     let resolution = resolution.parse().map_err(usage)?;
-    let request = Comparing { models, resolution, compute, allow_external, out, measured, bandwidth, speed };
+    let request = Comparing {
+        models,
+        resolution,
+        compute,
+        allow_external,
+        out,
+        measured,
+        bandwidth,
+        speed,
+        record_map,
+    };
     let scenes: Vec<_> = scenes.iter().map(|scene| scene.get().placed()).collect();
     let compare = || in_process::compare(scenes, request);
     let compared = detached(py, interrupt::end_children, compare)?.map_err(raised)?;

@@ -7,6 +7,7 @@ pub use super::requested_model::RequestedModel;
 use super::compare_arguments::Arguments;
 use super::comparison_job::Job;
 use super::optimise::{self, Solved};
+use super::record_map::RecordMap;
 use super::requested_model::within_bounds;
 use super::{Context, compare_inputs, kinds, stored_references};
 use crate::comparison::Comparison;
@@ -65,6 +66,8 @@ pub struct Comparing {
     pub bandwidth: Option<String>,
     /// Where the outer body's measured speed comes from, if not from the scene.
     pub speed: Option<Speed>,
+    /// How the measured files are to be read, if that is not to be inferred.
+    pub record_map: Option<PathBuf>,
 }
 
 /// A comparison, and the figure of each of its scenes as SVG.
@@ -81,7 +84,8 @@ pub struct Compared {
 /// # Errors
 /// Those of the command.
 pub fn compare(scenes: Vec<Placed>, request: Comparing) -> Result<Compared> {
-    let Comparing { models, resolution, compute, allow_external, out, measured, bandwidth, speed } = request;
+    let Comparing { models, resolution, compute, allow_external, out, measured, .. } = request;
+    let Comparing { bandwidth, speed, record_map, .. } = request;
     let is_written = out.is_some();
     let mut arguments: Arguments = parsed(&[])?;
     if let Some(bandwidth) = &bandwidth {
@@ -89,6 +93,7 @@ pub fn compare(scenes: Vec<Placed>, request: Comparing) -> Result<Compared> {
     }
     arguments.speed = speed.unwrap_or(arguments.speed);
     arguments.measured = measured;
+    arguments.record_map = RecordMap::of(record_map);
     arguments.permission.allow_external = allow_external;
     (arguments.models, arguments.resolution, arguments.compute) = (models, Some(resolution), compute);
     arguments.out = out.unwrap_or_default();

@@ -8,6 +8,9 @@ use crate::reference::record_source;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
+/// Between files with the channels of one impact.
+const JOINED: char = '+';
+
 #[derive(Debug, Clone, Default, Args)]
 pub struct RecordMap {
     /// Description of the measured files (TOML): columns, units, sensors, times [default: inferred from each file]
@@ -19,6 +22,11 @@ pub struct RecordMap {
 }
 
 impl RecordMap {
+    /// The map in `map`.
+    pub fn of(map: Option<PathBuf>) -> Self {
+        Self { map, save_map: None }
+    }
+
     /// Reads the records in `files`; what was inferred is printed.
     ///
     /// # Errors
@@ -38,7 +46,20 @@ impl RecordMap {
     }
 }
 
-fn read_record(file: &Path, map: &Map) -> Result<ReadRecord> {
+/// The record in a file, or in several with the channels of one impact: `outer.csv+inner.csv`.
+fn read_record(named: &Path, map: &Map) -> Result<ReadRecord> {
+    let names = named.to_string_lossy();
+    if named.exists() || !names.contains(JOINED) {
+        return read_file(named, map);
+    }
+    let mut parts = names.split(JOINED).map(|name| read_file(Path::new(name), map));
+    let first = parts.next().unwrap_or_else(|| read_file(named, map))?;
+    parts.try_fold(first, |found, next| {
+        Ok(ReadRecord { record: found.record.joined(&next?.record)?, ..found })
+    })
+}
+
+fn read_file(file: &Path, map: &Map) -> Result<ReadRecord> {
     let bytes = std::fs::read(file).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => Error::Usage(format!("there is no measured file {}", file.display())),
         _ => Error::io("reading", file, e),

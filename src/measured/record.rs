@@ -2,6 +2,7 @@
 
 use super::filter::SIGNALS;
 use crate::columns::{Columns, Map, ReadTable, Source};
+use crate::curves::MonotoneCubic;
 use crate::error::{Error, Result};
 use crate::kinds::KINDS;
 use crate::result::Curve;
@@ -73,6 +74,42 @@ impl Record {
         }
         let record = Record { file: file.to_path_buf(), time, channels, gaps, integrals };
         Ok(ReadRecord { record, map, how })
+    }
+
+    /// This record with the channels of `other` too, which has the same clock: both over the times that they share, at this one's instants.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] if a signal is in both, or they share too few samples.
+    pub fn joined(&self, other: &Record) -> Result<Record> {
+        let refused = |reason: String| {
+            let files = format!("{} and {}", self.file.display(), other.file.display());
+            Err(Error::Scene(miette::miette!("{files}: {reason}")))
+        };
+        if let Some(twice) = other.channels.iter().find(|channel| self.channel(channel.quantity).is_some()) {
+            return refused(format!("{} is in both files of one impact", twice.quantity));
+        }
+        let [first, last] = [other.time[0], other.time[other.time.len() - 1]];
+        let shared = self.time.partition_point(|t| *t < first)..self.time.partition_point(|t| *t <= last);
+        if shared.len() < FEWEST {
+            return refused(format!(
+                "they are of one impact, but only {} samples are at times that both have; at least {FEWEST} are needed",
+                shared.len()
+            ));
+        }
+        let time = self.time[shared.clone()].to_vec();
+        let own = self.channels.iter().map(|channel| Channel {
+            quantity: channel.quantity,
+            values: channel.values[shared.clone()].to_vec(),
+        });
+        let others = other.channels.iter().map(|channel| {
+            let curve = MonotoneCubic::new(&other.time, &channel.values);
+            Channel { quantity: channel.quantity, values: time.iter().map(|t| curve.at(*t)).collect() }
+        });
+        let channels = own.chain(others).collect();
+        let mut joined = Record { time, channels, ..self.without_samples() };
+        joined.gaps.extend(&other.gaps);
+        joined.integrals.extend(&other.integrals);
+        Ok(joined)
     }
 
     /// What is known of it besides times and signals.

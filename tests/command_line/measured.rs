@@ -65,6 +65,40 @@ fn compare_takes_measured_files_as_a_third_comparator() {
     assert!(fs::read_to_string(out.join("comparison.md")).unwrap().contains("### Measurement"));
 }
 
+/// The channels of one impact in two files with one clock are one record; a channel in both is refused.
+#[test]
+fn files_of_one_impact_are_joined() {
+    let folder = tempfile::tempdir().unwrap();
+    let both = fs::read_to_string(measured(folder.path(), "both.csv", 5.0)).unwrap();
+    let part = |name: &str, column: usize, skip: usize| {
+        let rows = both.lines().enumerate().filter(|(k, _)| *k == 0 || *k > skip);
+        let rows = rows.map(|(_, row)| {
+            let cells: Vec<&str> = row.split(',').collect();
+            format!("{},{}", cells[0], cells[column])
+        });
+        file(folder.path(), name, &rows.collect::<Vec<_>>().join("\n"))
+    };
+    let (outer, inner) = (part("outer.csv", 1, 0), part("inner.csv", 2, 40));
+    let out = folder.path().join("report");
+    let named = |second: &Path| format!("{}+{}", text(&outer), text(second));
+    let arguments = |joined: &str| {
+        ["compare", "scaled-plate-r10", "--models", "C", "--measured", joined, "--out", text(&out), "--json"]
+            .map(str::to_owned)
+    };
+    let joined = arguments(&named(&inner));
+    let found = &json(&joined.each_ref().map(String::as_str))["scenes"][0]["measured"];
+    assert_eq!(found["records"].as_array().unwrap().len(), 1);
+    assert!((found["records"][0]["efficiency"].as_f64().unwrap() - 0.6946).abs() < 0.001, "{found}");
+    let twice = arguments(&named(&outer));
+    let ended = impactcheck(&twice.each_ref().map(String::as_str));
+    assert_eq!(ended.status, 3, "{}", ended.error);
+    assert!(
+        flat(&ended.error).contains(&flat("outer_velocity is in both files of one impact")),
+        "{}",
+        ended.error
+    );
+}
+
 /// Models and measurement need no reference: a store without one, and no report.
 #[test]
 fn measured_files_are_compared_with_the_models_alone() {
