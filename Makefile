@@ -103,6 +103,7 @@ evidence: setup wheel
 	$(RUN) --store $(OUT)/evidence coverage --record
 	$(RUN) --store $(OUT)/evidence study auto --out $(OUT)/studies
 	$(PYTHON) -m fem_reference bands --random 50 --out $(OUT)/bands
+	$(PYTHON) -m fem_reference body-bands --random 8 --out $(OUT)/bands
 	$(PYTHON) -m fem_reference yielding --out reports/yielding.md
 	$(PYTHON) -m fem_reference rebound --out reports/rebound.md
 	# flights of the sphere by another program

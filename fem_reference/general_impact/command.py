@@ -8,8 +8,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from ..common.arguments import Study
+from ..common.arguments import Study, count
 from ..common.errors import SceneError, SolverError
+from ..common.progress import Progress
 from ..common.settings import Options
 from ..impact.command import solve_scene
 
@@ -111,9 +112,25 @@ def _groups(arguments: argparse.Namespace) -> None:
         print(text)
 
 
+def _of_bands(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--random", type=count, default=8, metavar="N", help="random bodies")
+    parser.add_argument(
+        "--out", type=Path, required=True, help="folder of what is solved, and of body-bands.md"
+    )
+
+
+def _bands(arguments: argparse.Namespace) -> None:
+    from .body_bands import report
+
+    report(arguments.random, arguments.out, Progress())
+
+
 COMMANDS = {"solve": _solve, "mesh": _mesh}
 STUDIES = {
     "groups": Study(
         "named groups, size and unit of a CAD part or a mesh", _groups_arguments, _groups
-    )
+    ),
+    "body-bands": Study(
+        "bands of random boxes and brackets compared with a finer mesh", _of_bands, _bands
+    ),
 }
