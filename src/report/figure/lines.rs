@@ -72,7 +72,7 @@ fn efficiency(outcome: &Outcome) -> f64 {
 pub(crate) fn measured_lines(measured: &Measured) -> Vec<Line> {
     let record = Line {
         name: "measured".into(),
-        short: "meas.".into(),
+        short: "exp.".into(),
         class: "fig-measured".into(),
         dash: "none",
         width: 1.4,
