@@ -11,6 +11,9 @@ use std::path::{Path, PathBuf};
 /// Fewest samples of a record.
 const FEWEST: usize = 32;
 
+/// Samples of a free flight that is added to a computed history, as long as the history.
+const FLIGHT: usize = 400;
+
 /// One measured signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
@@ -73,7 +76,40 @@ impl Record {
             return Err(format!("it has none of the signals {}", SIGNALS.join(", ")));
         }
         let record = Record { file: file.to_path_buf(), time, channels, gaps, integrals };
+        let record = if record.is_computed() { record.with_flights() } else { record };
         Ok(ReadRecord { record, map, how })
+    }
+
+    /// Whether it is a history that a program has computed from the first touch on: no instrument begins with zeros of time, of both
+    /// displacements and of both forces.
+    fn is_computed(&self) -> bool {
+        let zeros = ["outer_displacement", "inner_displacement", "outer_force", "inner_force"];
+        let is_zero = |name: &&str| self.channel(name).is_some_and(|channel| channel.values[0] == 0.0);
+        self.time[0] == 0.0 && zeros.iter().all(|name| is_zero(name))
+    }
+
+    /// A computed history with the free flights that it leaves out: before the first touch, and behind its end if no force acts there.
+    fn with_flights(self) -> Self {
+        let last = self.time.len() - 1;
+        let ended = self.channels.iter().all(|c| !c.quantity.ends_with("force") || c.values[last] == 0.0);
+        let interval = self.time[last] / FLIGHT as f64;
+        let before: Vec<f64> = (1..=FLIGHT).rev().map(|k| -interval * k as f64).collect();
+        let after = if ended { FLIGHT } else { 0 };
+        let after: Vec<f64> = (1..=after).map(|k| self.time[last] + interval * k as f64).collect();
+        let channels = self.channels.iter().map(|channel| {
+            let speed = |k: usize| {
+                let body = channel.quantity.strip_suffix("displacement")?;
+                Some(self.channel(&format!("{body}velocity"))?.values[k])
+            };
+            let flown = |k: usize, times: &[f64]| -> Vec<f64> {
+                let slope = speed(k).unwrap_or(0.0);
+                times.iter().map(|t| channel.values[k] + slope * (t - self.time[k])).collect()
+            };
+            let values = [flown(0, &before), channel.values.clone(), flown(last, &after)].concat();
+            Channel { values, ..*channel }
+        });
+        let channels = channels.collect();
+        Record { channels, time: [&before[..], &self.time, &after].concat(), ..self.without_samples() }
     }
 
     /// This record with the channels of `other` too, which has the same clock: both over the times that they share, at this one's instants.

@@ -99,6 +99,29 @@ fn files_of_one_impact_are_joined() {
     );
 }
 
+/// A history that the program has written begins with the first touch and ends with the last: it has no free flights.
+#[test]
+fn a_history_of_the_program_is_a_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let (history, out) = (folder.path().join("history.csv"), folder.path().join("report"));
+    json(&["reduced", "scaled-plate-r10", "--model", "B", "--history", text(&history), "--json"]);
+    let document = json(&[
+        "compare",
+        "scaled-plate-r10",
+        "--models",
+        "B",
+        "--measured",
+        text(&history),
+        "--out",
+        text(&out),
+        "--json",
+    ]);
+    let found = &document["scenes"][0]["measured"];
+    let of_b = &found["partners"][1];
+    assert!(of_b["efficiency_difference"].as_f64().unwrap().abs() < 1e-4, "{found}");
+    assert!(found["records"][0]["shift"].as_f64().unwrap().abs() < 2e-6, "{found}");
+}
+
 /// Models and measurement need no reference: a store without one, and no report.
 #[test]
 fn measured_files_are_compared_with_the_models_alone() {
