@@ -129,7 +129,7 @@ class Program:
 
     def run(self, arguments: list[str]) -> subprocess.CompletedProcess[str]:
         """Run it in the folder of the records."""
-        home = {"IMPACTCHECK_HOME": str(ROOT), "NO_COLOR": "1", "COLUMNS": "400"}
+        home = {"IMPACTCHECK_HOME": str(ROOT), "IMPACTCHECK_PYTHON": sys.executable}
         return subprocess.run(
             [str(self.path), *arguments],
             cwd=self.folder,
