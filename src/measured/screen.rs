@@ -113,6 +113,20 @@ pub(crate) fn extremes(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)))
 }
 
+/// Step between two values that the instrument gives: the smallest distance of different ones; 0 if there is one value alone.
+pub(super) fn resolution(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]);
+    steps.filter(|step| *step > 0.0).reduce(f64::min).unwrap_or(0.0)
+}
+
+/// Root mean square of the changes of the slope between neighbouring values: of their noise, as courses and disturbances are smooth.
+pub(super) fn roughness(values: &[f64]) -> f64 {
+    let bends = values.windows(3).map(|v| (v[2] - 2.0 * v[1] + v[0]).powi(2));
+    (bends.sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
 /// Whether the signal has noise that its resolution shows, apart from the samples `omitted`: equal ones are then no chance.
 fn shows_noise(values: &[f64], omitted: impl Fn(usize) -> bool) -> bool {
     let (mut pairs, mut equal, mut bends, mut last) = (0, 0, 0, 0.0);
