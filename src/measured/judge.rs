@@ -18,7 +18,7 @@ const LARGE_OFFSET: f64 = 0.5;
 /// differ from it.
 const OTHER_SCENE: f64 = 0.05;
 /// Delay of a signal over the period of the bandwidth that counts, and the part of the squares that it has to take away.
-const DELAY: f64 = 0.3;
+const DELAY: f64 = 0.1;
 const DELAY_EXPLAINS: f64 = 0.5;
 
 /// Half widths of the 95 % interval by which an excess of energy is hardly chance, and by which it is none.
