@@ -25,7 +25,7 @@ const DELAY_EXPLAINS: f64 = 0.5;
 /// steps of the resolution that the larger roughness has to exceed.
 const HELD: f64 = 0.5;
 const ROUGH_SAMPLES: usize = 50;
-const ROUGH_STEPS: f64 = 2.0;
+const ROUGH_STEPS: f64 = 1.5;
 
 /// Half widths of the 95 % interval by which an excess of energy is hardly chance, and by which it is none.
 const EXCESS: f64 = 1.5;

@@ -121,10 +121,11 @@ pub(super) fn resolution(values: &[f64]) -> f64 {
     steps.filter(|step| *step > 0.0).reduce(f64::min).unwrap_or(0.0)
 }
 
-/// Root mean square of the changes of the slope between neighbouring values: of their noise, as courses and disturbances are smooth.
+/// Median size of the second differences: of noise, as courses and disturbances are smooth, and jumps are few.
 pub(super) fn roughness(values: &[f64]) -> f64 {
-    let bends = values.windows(3).map(|v| (v[2] - 2.0 * v[1] + v[0]).powi(2));
-    (bends.sum::<f64>() / values.len().max(1) as f64).sqrt()
+    let mut bends: Vec<f64> = values.windows(3).map(|v| (v[2] - 2.0 * v[1] + v[0]).abs()).collect();
+    bends.sort_by(f64::total_cmp);
+    bends.get(bends.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Whether the signal has noise that its resolution shows, apart from the samples `omitted`: equal ones are then no chance.
