@@ -205,7 +205,8 @@ fn one_impact_counts_once() {
     let mut again = first.clone();
     again.time.iter_mut().for_each(|t| *t += 1e-3);
     let half = |values: &[f64]| values.iter().copied().step_by(2).collect::<Vec<f64>>();
-    let channels = first.channels.iter().map(|channel| Channel { values: half(&channel.values), ..channel.clone() });
+    let channels =
+        first.channels.iter().map(|channel| Channel { values: half(&channel.values), ..channel.clone() });
     let halved = Record { time: half(&first.time), channels: channels.collect(), ..first.clone() };
     let [outer, inner] =
         [0, 1].map(|k| Record { channels: vec![first.channels[k].clone()], ..first.clone() });
