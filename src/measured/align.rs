@@ -187,9 +187,10 @@ impl Alignment<'_> {
         let signals = self.record.channels.iter().zip(&seen).map(corrected).collect();
         let JudgedRecord { outer_velocity_initial, inner, efficiency, findings: further } =
             self.judged(shift, &seen)?;
-        // a signal at its limit differs from every scene
+        // a signal at its limit differs from every scene, and is named once
         let is_clipped = findings.iter().any(|finding| finding.kind == FindingKind::Clipped);
-        findings.extend(further.into_iter().filter(|f| !(is_clipped && f.kind == FindingKind::OtherScene)));
+        let follows = |f: &Finding| matches!(f.kind, FindingKind::OtherScene | FindingKind::Clipped);
+        findings.extend(further.into_iter().filter(|f| !(is_clipped && follows(f))));
         Ok(AlignedRecord {
             file: self.record.file.clone(),
             samples: self.record.time.len(),

@@ -67,6 +67,6 @@ fn repeats(a: &AlignedRecord, b: &AlignedRecord) -> bool {
                 .filter(|(t, _)| within.contains(t))
                 .map(|(t, residual)| (*residual, own.at(*t) - course.at(*t)))
                 .unzip();
-            *noise > LEAST_NOISE * (high - low) && roughness(&differences) < SAME * roughness(&noises)
+            *noise > LEAST_NOISE * (high - low) && roughness(&differences, 1) < SAME * roughness(&noises, 1)
         })
 }

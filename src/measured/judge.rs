@@ -21,11 +21,12 @@ const OTHER_SCENE: f64 = 0.05;
 /// Delay of a signal over the period of the bandwidth that counts, and the part of the squares that it has to take away.
 const DELAY: f64 = 0.1;
 const DELAY_EXPLAINS: f64 = 0.5;
-/// Roughness of a free flight over that of the other one below which its signal is held at a limit, fewest samples of each that show it, and
-/// steps of the resolution that the larger roughness has to exceed.
+/// Roughness of a free flight over that of the other one below which its signal is held at a limit; steps of the resolution that the larger
+/// one has to exceed; samples a period of the bandwidth that show it, and how many of them each flight has to have.
 const HELD: f64 = 0.5;
-const ROUGH_SAMPLES: usize = 50;
 const ROUGH_STEPS: f64 = 1.5;
+const ROUGH_PER_PERIOD: f64 = 4.0;
+const ROUGH_SAMPLES: usize = 30;
 
 /// Half widths of the 95 % interval by which an excess of energy is hardly chance, and by which it is none.
 const EXCESS: f64 = 1.5;
@@ -218,11 +219,16 @@ impl Alignment<'_> {
             return false;
         };
         let sides = [&seen.free.before, &seen.free.after];
-        if sides.iter().any(|side| side.len() < ROUGH_SAMPLES) {
+        let [start, end] = self.whole();
+        let interval = (end - start) / self.record.time.len() as f64;
+        let spacing = (1.0 / (ROUGH_PER_PERIOD * self.bandwidth * interval)).round().max(1.0) as usize;
+        if sides.iter().any(|side| side.len() < ROUGH_SAMPLES * spacing) {
             return false;
         }
-        let [before, after] =
-            sides.map(|side| roughness(&side.iter().map(|(_, value)| *value).collect::<Vec<f64>>()));
+        let [before, after] = sides.map(|side| {
+            let values: Vec<f64> = side.iter().map(|(_, value)| *value).collect();
+            roughness(&values, spacing)
+        });
         let level = seen.flight.level;
         let (large, other) =
             if level.abs() > (level + step).abs() { (before, after) } else { (after, before) };

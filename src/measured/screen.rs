@@ -121,9 +121,11 @@ pub(super) fn resolution(values: &[f64]) -> f64 {
     steps.filter(|step| *step > 0.0).reduce(f64::min).unwrap_or(0.0)
 }
 
-/// Median size of the second differences: of noise, as courses and disturbances are smooth, and jumps are few.
-pub(super) fn roughness(values: &[f64]) -> f64 {
-    let mut bends: Vec<f64> = values.windows(3).map(|v| (v[2] - 2.0 * v[1] + v[0]).abs()).collect();
+/// Median size of the second differences of values that are `spacing` samples apart: of noise, as courses and disturbances are smooth, and
+/// jumps are few.
+pub(super) fn roughness(values: &[f64], spacing: usize) -> f64 {
+    let bend = |k: usize| (values[k] - 2.0 * values[k - spacing] + values[k - 2 * spacing]).abs();
+    let mut bends: Vec<f64> = (2 * spacing..values.len()).map(bend).collect();
     bends.sort_by(f64::total_cmp);
     bends.get(bends.len() / 2).copied().unwrap_or(0.0)
 }
