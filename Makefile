@@ -125,6 +125,7 @@ evidence: setup wheel
 	    nbclient.NotebookClient(n, record_timing=False).execute(); nbformat.write(n, 'impact.ipynb')"
 	$(PYTHON) benches/unneeded.py target/release/impactcheck $(addprefix --before ,$(BEFORE)) --out $(OUT)/unneeded
 	python3 benches/kills.py target/release/impactcheck --out reports/kills.md
+	$(TOOL) benches/records.py target/release/impactcheck --out reports/records.md
 	fuzz/run.sh scene 1800
 	fuzz/run.sh store 1800
 	PROPTEST_CASES=200000 cargo test --release --test store random_input

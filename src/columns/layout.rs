@@ -135,11 +135,17 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// Lines from the last quarter of `text`, where numbers are even if much stands before them; of a short one the last line.
+/// Lines from the last quarter of `text`, where numbers are even if much stands before them, at even distances, since values may be missing
+/// in some part of it; of a short one the last line.
 fn shown(text: &str) -> Vec<&str> {
-    let middle = (text.len() / 4 * 3..text.len()).find(|k| text.is_char_boundary(*k)).unwrap_or(0);
+    let from = text.len() / 4 * 3;
     let whole = |line: &&str| !line.trim().is_empty();
-    let later: Vec<&str> = text[middle..].lines().skip(1).filter(whole).take(SHOWN).collect();
+    let after = |k: usize| {
+        let place = from + (text.len() - from) / SHOWN * k;
+        let place = (place..text.len()).find(|place| text.is_char_boundary(*place))?;
+        text[place..].lines().skip(1).find(whole)
+    };
+    let later: Vec<&str> = (0..SHOWN).filter_map(after).collect();
     if later.is_empty() { text.lines().rfind(whole).into_iter().collect() } else { later }
 }
 
@@ -199,7 +205,8 @@ fn headings(
     let has_units = |row: &Vec<String>| {
         let filled: Vec<String> =
             numeric.iter().map(|k| bare(&cell(row, *k))).filter(|unit| !unit.is_empty()).collect();
-        !filled.is_empty() && filled.iter().all(|unit| is_unit(unit))
+        // the unit of row numbers, as Rigol writes it
+        !filled.is_empty() && filled.iter().all(|unit| is_unit(unit) || unit == "Sequence")
     };
     let fits = |row: &&Vec<String>| {
         row.len() >= last && numeric.iter().any(|k| kind(&cell(row, *k), '.') == CellKind::Text)
@@ -259,6 +266,14 @@ mod tests {
             ),
             ("; a comment\nt,v\n0,1\n1,2\n", ',', '.', "t v", "", 2),
             ("0 1\n1 2\n", ' ', '.', "1 2", "", 0),
+            (
+                "X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,-1e-4,5e-7\n0,1.5,2.5,\n1,2.5,3.5,\n",
+                ',',
+                '.',
+                "X CH1 CH2 Start",
+                "Sequence Volt Volt -1e-4",
+                2,
+            ),
         ] {
             let found = layout(text);
             assert_eq!((found.delimiter, found.decimal), (delimiter, decimal), "{text}");
@@ -276,6 +291,13 @@ mod tests {
         let found = layout(text);
         assert_eq!(found.lines_before, 0);
         assert_eq!(found.titles.headings[3..], ["4", "5"]);
+    }
+
+    #[test]
+    fn values_that_are_missing_at_length_hide_no_columns() {
+        let row = |k: usize| if (152..190).contains(&k) { format!("{k},,\n") } else { format!("{k},1,2\n") };
+        let found = layout(&format!("t,v,w\n{}", (0..200).map(row).collect::<String>()));
+        assert_eq!((found.delimiter, found.titles.headings.join(" ")), (',', "t v w".to_owned()));
     }
 
     #[test]

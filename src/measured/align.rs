@@ -6,7 +6,7 @@ use super::finding::{Finding, FindingKind};
 use super::flight::{FEWEST, FreeFlight, FreeFlightFit};
 use super::judge::{JudgedRecord, Seen};
 use super::record::{Channel, Record};
-use super::screen::screened;
+use super::screen::{resolution, screened};
 use super::shortened::shortened;
 use super::structure::Disturbance;
 use crate::error::{Error, Result};
@@ -189,9 +189,10 @@ impl Alignment<'_> {
         let signals = self.record.channels.iter().zip(&seen).map(corrected).collect();
         let JudgedRecord { outer_velocity_initial, inner, efficiency, findings: further } =
             self.judged(shift, &seen)?;
-        // a signal at its limit differs from every scene
+        // a signal at its limit differs from every scene, and is named once
         let is_clipped = findings.iter().any(|finding| finding.kind == FindingKind::Clipped);
-        findings.extend(further.into_iter().filter(|f| !(is_clipped && f.kind == FindingKind::OtherScene)));
+        let follows = |f: &Finding| matches!(f.kind, FindingKind::OtherScene | FindingKind::Clipped);
+        findings.extend(further.into_iter().filter(|f| !(is_clipped && follows(f))));
         Ok(AlignedRecord {
             file: self.record.file.clone(),
             samples: self.record.time.len(),
@@ -296,7 +297,8 @@ impl Alignment<'_> {
 
     /// What signal number `k` shows, its free flight ending with the first further impact.
     fn seen(&self, k: usize, shift: f64) -> Result<Seen> {
-        let quantity = self.record.channels[k].quantity;
+        let Channel { quantity, values } = &self.record.channels[k];
+        let (quantity, resolution) = (*quantity, resolution(values));
         let mut free = self.free_flight(k, shift)?;
         let (mut events, mut hums, mut disturbance, mut ends) = (Vec::new(), Vec::new(), None, f64::INFINITY);
         for _ in 0..DISTURBANCES {
@@ -321,7 +323,7 @@ impl Alignment<'_> {
                 }
             }
         }
-        let (flight, errors) = (self.fitted(k, &free)?, free.errors(self.bandwidth));
+        let (flight, errors) = (self.fitted(k, &free)?, free.errors(self.bandwidth, resolution));
         let outer = quantity.starts_with("outer");
         let is_force = quantity.ends_with("force");
         let known = match outer {

@@ -2,10 +2,10 @@
 
 use super::align::AlignedRecord;
 use super::finding::{Finding, FindingKind};
-use super::screen::extremes;
+use super::screen::{extremes, roughness};
 use crate::curves::MonotoneCubic;
 
-/// Difference of two records, root mean square over the noise of one: that of two impacts is 1.4.
+/// Roughness of the difference of two records over that of one in free flight: of two impacts it is 1 at least, of a copy about 0.
 const SAME: f64 = 0.7;
 /// Noise over the span of a signal below which a record is a computed one, whose likeness shows nothing.
 const LEAST_NOISE: f64 = 1e-5;
@@ -46,25 +46,27 @@ fn of(records: &[AlignedRecord], k: usize) -> (bool, Option<Finding>) {
 }
 
 fn are_same(a: &AlignedRecord, b: &AlignedRecord) -> bool {
-    if a.time == b.time && a.signals == b.signals {
-        return true;
-    }
+    // a copy may have some of the samples alone
+    (a.time == b.time && a.signals == b.signals) || repeats(a, b) || repeats(b, a)
+}
+
+/// Whether the samples of `a` in free flight are those of `b` at the same times, noise included. What else both have in common, as the
+/// decay of the same AC-coupled sensor, does not count.
+fn repeats(a: &AlignedRecord, b: &AlignedRecord) -> bool {
     a.signals.len() == b.signals.len()
-        && a.signals.iter().zip(&a.noise).all(|(signal, noise)| {
+        && a.signals.iter().zip(&a.noise).zip(&a.residuals).all(|((signal, noise), residuals)| {
             let Some(other) = b.signals.iter().find(|other| other.quantity == signal.quantity) else {
                 return false;
             };
             let (low, high) = extremes(&signal.values);
             let course = MonotoneCubic::new(&b.time, &other.values);
             let within = b.time[0]..b.time[b.time.len() - 1];
-            let differences: Vec<f64> = a
-                .time
+            let own = MonotoneCubic::new(&a.time, &signal.values);
+            let (noises, differences): (Vec<f64>, Vec<f64>) = residuals
                 .iter()
-                .zip(&signal.values)
                 .filter(|(t, _)| within.contains(t))
-                .map(|(t, y)| y - course.at(*t))
-                .collect();
-            let mean = differences.iter().map(|d| d * d).sum::<f64>() / differences.len().max(1) as f64;
-            *noise > LEAST_NOISE * (high - low) && mean.sqrt() < SAME * noise
+                .map(|(t, residual)| (*residual, own.at(*t) - course.at(*t)))
+                .unzip();
+            *noise > LEAST_NOISE * (high - low) && roughness(&differences, 1) < SAME * roughness(&noises, 1)
         })
 }

@@ -11,6 +11,8 @@ pub(super) const FEWEST: usize = 8;
 /// nothing more of offset, drift and velocity.
 const PER_PERIOD: f64 = 2.0;
 const GROUPS: (f64, f64) = (12.0, 60.0);
+/// Noise over the step between two values of a signal from which on it evens out their rounding.
+const EVEN: f64 = 0.5;
 
 /// Samples of one signal in free flight. Times in s from the first touch, values in SI.
 #[derive(Debug, Clone)]
@@ -108,8 +110,8 @@ impl FreeFlight {
         sides.into_iter().flat_map(of).collect()
     }
 
-    /// Standard errors; `None` if there is too little free flight. `bandwidth` in Hz.
-    pub fn errors(&self, bandwidth: f64) -> Option<FlightErrors> {
+    /// Standard errors; `None` if there is too little free flight. `bandwidth` in Hz; `resolution` is the step between two values.
+    pub fn errors(&self, bandwidth: f64, resolution: f64) -> Option<FlightErrors> {
         let Grouped { time, values, segments, .. } = self.grouped(bandwidth);
         let basis = self.basis(&time, segments[0].end);
         let before = if self.is_level { 0 } else { 1 };
@@ -117,7 +119,28 @@ impl FreeFlight {
         let SignalFit { errors, .. } =
             SignalFit::of((&time, &values), &basis.columns(0, found).into_owned(), bandwidth)?;
         let of = |k: usize| errors.get(k).copied().unwrap_or(f64::INFINITY);
-        Some(FlightErrors { before: of(before), slope: of(1), step: of(basis.ncols() - 1) })
+        let noise = self.fitted()?.noise;
+        let rounded = [&self.before, &self.after].map(|side| match noise < EVEN * resolution {
+            true => self.rounding(side, resolution),
+            false => 0.0,
+        });
+        Some(FlightErrors {
+            before: of(before).hypot(rounded[0]),
+            slope: of(1),
+            step: of(basis.ncols() - 1).hypot(rounded[0].hypot(rounded[1])),
+        })
+    }
+
+    /// Standard error of the velocity on one `side` whose values are rounded to steps of `resolution`, all in the same direction: of the level,
+    /// or of both ends of a displacement.
+    fn rounding(&self, side: &[(f64, f64)], resolution: f64) -> f64 {
+        let error = resolution / 12.0_f64.sqrt();
+        match (side.first(), side.last()) {
+            (Some(first), Some(last)) if !self.is_level && last.0 > first.0 => {
+                2.0_f64.sqrt() * error / (last.0 - first.0)
+            }
+            _ => error,
+        }
     }
 
     pub fn grouped(&self, bandwidth: f64) -> Grouped {
@@ -212,11 +235,28 @@ mod tests {
             let within = (0..u64::from(records)).filter(|seed| {
                 let free = free_flight(length, filter, *seed);
                 let step = free.fitted().and_then(|flight| flight.step).expect("a step");
-                (step - STEP).abs() <= 1.96 * free.errors(BANDWIDTH).expect("enough of it").step
+                (step - STEP).abs() <= 1.96 * free.errors(BANDWIDTH, 0.0).expect("enough of it").step
             });
             let share = within.count() as f64 / f64::from(records);
             assert!((0.92..=0.985).contains(&share), "{length:e} s, {filter:?}: {share}");
         }
+    }
+
+    /// Noise far below the step between two values shows one value alone, or few: the interval holds the step all the same.
+    #[test]
+    fn intervals_hold_the_step_of_rounded_records() {
+        let resolution = 10e-3;
+        let within = (0..200).filter(|seed| {
+            let mut free = free_flight(300e-6, None, *seed);
+            // the level lies anywhere between two values
+            let level = fastrand::Rng::with_seed(*seed).f64() * resolution;
+            for (_, value) in free.before.iter_mut().chain(&mut free.after) {
+                *value = ((*value + level) / resolution).round() * resolution;
+            }
+            let step = free.fitted().and_then(|flight| flight.step).expect("a step");
+            (step - STEP).abs() <= 1.96 * free.errors(BANDWIDTH, resolution).expect("enough of it").step
+        });
+        assert!(within.count() >= 190);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::align::{Alignment, ChannelCorrection, Speed};
 use super::finding::{Finding, FindingKind};
 use super::flight::{FlightErrors, FreeFlight, FreeFlightFit};
 use super::noise::NORMAL_95;
+use super::screen::{resolution, roughness};
 use super::structure::{Disturbance, Hum};
 use crate::error::{Error, Result};
 use crate::format;
@@ -18,8 +19,14 @@ const LARGE_OFFSET: f64 = 0.5;
 /// differ from it.
 const OTHER_SCENE: f64 = 0.05;
 /// Delay of a signal over the period of the bandwidth that counts, and the part of the squares that it has to take away.
-const DELAY: f64 = 0.3;
+const DELAY: f64 = 0.1;
 const DELAY_EXPLAINS: f64 = 0.5;
+/// Roughness of a free flight over that of the other one below which its signal is held at a limit; steps of the resolution that the larger
+/// one has to exceed; samples a period of the bandwidth that show it, and how many of them each flight has to have.
+const HELD: f64 = 0.5;
+const ROUGH_STEPS: f64 = 1.5;
+const ROUGH_PER_PERIOD: f64 = 4.0;
+const ROUGH_SAMPLES: usize = 30;
 
 /// Half widths of the 95 % interval by which an excess of energy is hardly chance, and by which it is none.
 const EXCESS: f64 = 1.5;
@@ -205,6 +212,12 @@ impl Alignment<'_> {
             );
             findings.push(Finding::new(FindingKind::Drift, self.whole(), effect));
         }
+        if self.is_held(seen) {
+            let effect = format!(
+                "{quantity}: where it is largest its noise is less than half of that on the other side of the impact: an amplifier holds it at its limit, velocities and efficiency from this signal are wrong"
+            );
+            findings.push(Finding::new(FindingKind::Clipped, self.whole(), effect));
+        }
         let span = self.span(quantity);
         let misfit = self.misfit(shift, seen) / span;
         let may_be_any = self.record.integrals.contains(quantity);
@@ -222,6 +235,30 @@ impl Alignment<'_> {
             findings.push(Finding::new(FindingKind::OtherScene, self.whole(), effect));
         }
         findings
+    }
+
+    /// Whether the free flight with the larger values of a level has much less noise than the other one.
+    fn is_held(&self, seen: &Seen) -> bool {
+        let quantity = seen.correction.quantity;
+        let channel = self.record.channels.iter().find(|channel| channel.quantity == quantity);
+        let (Some(step), Some(channel), true) = (seen.flight.step, channel, seen.free.is_level) else {
+            return false;
+        };
+        let sides = [&seen.free.before, &seen.free.after];
+        let [start, end] = self.whole();
+        let interval = (end - start) / self.record.time.len() as f64;
+        let spacing = (1.0 / (ROUGH_PER_PERIOD * self.bandwidth * interval)).round().max(1.0) as usize;
+        if sides.iter().any(|side| side.len() < ROUGH_SAMPLES * spacing) {
+            return false;
+        }
+        let [before, after] = sides.map(|side| {
+            let values: Vec<f64> = side.iter().map(|(_, value)| *value).collect();
+            roughness(&values, spacing)
+        });
+        let level = seen.flight.level;
+        let (large, other) =
+            if level.abs() > (level + step).abs() { (before, after) } else { (after, before) };
+        large < HELD * other && other > ROUGH_STEPS * resolution(&channel.values)
     }
 
     /// Whether the drift of a velocity is large and no chance.

@@ -111,6 +111,23 @@ pub(crate) fn extremes(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)))
 }
 
+/// Step between two values that the instrument gives: the smallest distance of different ones; 0 if there is one value alone.
+pub(super) fn resolution(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]);
+    steps.filter(|step| *step > 0.0).reduce(f64::min).unwrap_or(0.0)
+}
+
+/// Median size of the second differences of values that are `spacing` samples apart: of noise, as courses and disturbances are smooth, and
+/// jumps are few.
+pub(super) fn roughness(values: &[f64], spacing: usize) -> f64 {
+    let bend = |k: usize| (values[k] - 2.0 * values[k - spacing] + values[k - 2 * spacing]).abs();
+    let mut bends: Vec<f64> = (2 * spacing..values.len()).map(bend).collect();
+    bends.sort_by(f64::total_cmp);
+    bends.get(bends.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// Whether the signal has noise that its resolution shows, apart from the samples `omitted`: equal ones are then no chance.
 fn shows_noise(values: &[f64], omitted: impl Fn(usize) -> bool) -> bool {
     let (mut pairs, mut equal, mut bends, mut last) = (0, 0, 0, 0.0);
@@ -131,7 +148,8 @@ fn shows_noise(values: &[f64], omitted: impl Fn(usize) -> bool) -> bool {
 fn clipped(time: &[f64], channel: &Channel) -> Option<Finding> {
     let values = &channel.values;
     let (low, high) = extremes(values);
-    [low, high].into_iter().find_map(|limit| {
+    // a body at rest in a computed record is at 0, which is no limit of an instrument
+    [low, high].into_iter().filter(|limit| *limit != 0.0).find_map(|limit| {
         let at_limit: Vec<usize> = (0..values.len()).filter(|k| values[*k] == limit).collect();
         let others = values.iter().copied().filter(|v| *v != limit);
         let next = others.min_by(|a, b| (a - limit).abs().total_cmp(&(b - limit).abs()))?;

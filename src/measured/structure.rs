@@ -12,9 +12,9 @@ const MAINS: [f64; 8] = [50.0, 60.0, 100.0, 120.0, 150.0, 180.0, 250.0, 300.0];
 const LEAST_PERIOD: f64 = 0.5;
 /// Groups on either side of a further impact.
 const MARGIN: usize = 3;
-/// Standard errors from which on a disturbance counts as found, and its size over the step of the impact.
+/// Standard errors from which on a disturbance counts as found, and its size over the step of the impact: the efficiency changes by twice that.
 const SIGNIFICANT: f64 = 7.0;
-const LEAST_SIZE: f64 = 0.01;
+const LEAST_SIZE: f64 = 0.002;
 /// Part of the squares left by a simpler explanation that a hum, which adapts to much, must not exceed.
 const BETTER: f64 = 0.7;
 

@@ -163,6 +163,15 @@ fn a_hum_is_taken_out() {
     assert!((found.efficiency.unwrap() - bench.efficiency()).abs() < 0.01, "{:?}", found.efficiency);
 }
 
+/// Noise of a later stage hides that all values are the same.
+#[test]
+fn an_amplifier_at_its_limit_is_found() {
+    let bench = Bench::of("scaled-plate-r10");
+    let limited = |k, t: f64, v: f64| if k == 1 { v.max(-0.43) + 3e-4 * (3.3e7 * t).sin() } else { v };
+    let found = bench.align(&changed(&bench.record(1, 400e-6), limited)).unwrap();
+    assert!(kinds(&found).contains(&FindingKind::Clipped), "{:?}", found.findings);
+}
+
 #[test]
 fn a_record_of_another_scene_or_a_negated_signal_is_not_taken() {
     let [bench, other] = ["scaled-plate-r10", "scaled-plate-r6.35"].map(Bench::of);
@@ -195,6 +204,10 @@ fn one_impact_counts_once() {
     let [first, second] = [1, 2].map(|seed| bench.record(seed, 400e-6));
     let mut again = first.clone();
     again.time.iter_mut().for_each(|t| *t += 1e-3);
+    let half = |values: &[f64]| values.iter().copied().step_by(2).collect::<Vec<f64>>();
+    let channels =
+        first.channels.iter().map(|channel| Channel { values: half(&channel.values), ..channel.clone() });
+    let halved = Record { time: half(&first.time), channels: channels.collect(), ..first.clone() };
     let [outer, inner] =
         [0, 1].map(|k| Record { channels: vec![first.channels[k].clone()], ..first.clone() });
     let found = |records: &[Record]| {
@@ -204,7 +217,11 @@ fn one_impact_counts_once() {
     };
     let duplicate = vec![FindingKind::Duplicate];
     assert_eq!(found(&[first.clone(), second, again]), [vec![], vec![], duplicate.clone()]);
+    assert_eq!(found(&[first.clone(), halved]), [vec![], duplicate.clone()]);
     assert_eq!(found(&[outer, inner]), [duplicate, vec![]]);
+    // of two impacts only the decay is the same
+    let decay = |seed| changed(&bench.record(seed, 400e-6), |_, t, v| v + 0.1 * (-t / 300e-6).exp());
+    assert!(!found(&[decay(1), decay(2)])[1].contains(&FindingKind::Duplicate));
 }
 
 #[test]
