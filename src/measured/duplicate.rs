@@ -2,13 +2,15 @@
 
 use super::align::AlignedRecord;
 use super::finding::{Finding, FindingKind};
-use super::screen::{extremes, roughness};
+use super::screen::{extremes, resolution, roughness};
 use crate::curves::MonotoneCubic;
 
 /// Roughness of the difference of two records over that of one in free flight: of two impacts it is 1 at least, of a copy about 0.
 const SAME: f64 = 0.7;
 /// Noise over the span of a signal below which a record is a computed one, whose likeness shows nothing.
 const LEAST_NOISE: f64 = 1e-5;
+/// Noise in steps of the resolution below which its course is not seen.
+const LEAST_STEPS: f64 = 0.5;
 
 /// Adds a finding to each of `records` that repeats an earlier one, and to each that shows no inner body while another shows no outer
 /// one: both belong to one impact.
@@ -54,7 +56,8 @@ fn are_same(a: &AlignedRecord, b: &AlignedRecord) -> bool {
 /// decay of the same AC-coupled sensor, does not count.
 fn repeats(a: &AlignedRecord, b: &AlignedRecord) -> bool {
     a.signals.len() == b.signals.len()
-        && a.signals.iter().zip(&a.noise).zip(&a.residuals).all(|((signal, noise), residuals)| {
+        && a.signals.iter().enumerate().all(|(k, signal)| {
+            let (noise, residuals) = (&a.noise[k], &a.residuals[k]);
             let Some(other) = b.signals.iter().find(|other| other.quantity == signal.quantity) else {
                 return false;
             };
@@ -67,6 +70,8 @@ fn repeats(a: &AlignedRecord, b: &AlignedRecord) -> bool {
                 .filter(|(t, _)| within.contains(t))
                 .map(|(t, residual)| (*residual, own.at(*t) - course.at(*t)))
                 .unzip();
-            *noise > LEAST_NOISE * (high - low) && roughness(&differences, 1) < SAME * roughness(&noises, 1)
+            // noise below the step between two values is mostly that of their rounding, which any two records may share
+            *noise > (LEAST_NOISE * (high - low)).max(LEAST_STEPS * resolution(&a.raw[k]))
+                && roughness(&differences, 1) < SAME * roughness(&noises, 1)
         })
 }
