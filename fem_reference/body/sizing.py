@@ -20,8 +20,9 @@ from scipy.spatial.distance import cdist
 from ..common.arrays import Floats
 from .skin import Skin
 
-WALL_SHARE = 0.68
-"""Largest element over the wall: gmsh makes two layers of most walls of it."""
+WALL_SHARE = 0.5
+"""Largest element over the wall: two layers. With 0.68 some walls of a thin box had one, and its
+efficiency was 3.7 % off, where the coarser mesh showed 1 %."""
 CONTACT_SHARE = 0.12
 """Element at a contact over the wall there."""
 LEAST_CONTACT_SHARE = 0.03

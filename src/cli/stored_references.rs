@@ -61,7 +61,9 @@ pub(super) fn only_stored(context: &Context, scenes: &[String]) -> Result<Option
     if !matches!(store.find_here_or_shipped(scene, Resolution::Paper), Lookup::Missing) {
         return Ok(None);
     }
-    let finest = store.resolutions(scene).pop();
+    let shipped = Store::shipped().ok().filter(|shipped| *shipped != store);
+    let stores = std::iter::once(&store).chain(&shipped);
+    let finest = stores.flat_map(|store| store.resolutions(scene)).max();
     if let Some(resolution) = finest {
         let argument = resolution.argument();
         context.note(format_args!(
