@@ -166,7 +166,7 @@ pub fn align_all(
 ) -> Result<Vec<AlignedRecord>> {
     let aligned = records.iter().map(|record| align(record, model, ends, approach, how));
     let mut aligned = aligned.collect::<Result<Vec<_>>>()?;
-    duplicate::mark(&mut aligned);
+    duplicate::mark(&mut aligned, how.0);
     Ok(aligned)
 }
 

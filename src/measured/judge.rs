@@ -4,7 +4,7 @@ use super::align::{Alignment, ChannelCorrection, Speed};
 use super::finding::{Finding, FindingKind};
 use super::flight::{FlightErrors, FreeFlight, FreeFlightFit};
 use super::noise::NORMAL_95;
-use super::screen::{resolution, roughness};
+use super::screen::{independent, resolution, roughness};
 use super::structure::{Disturbance, Hum};
 use crate::error::{Error, Result};
 use crate::format;
@@ -22,10 +22,9 @@ const OTHER_SCENE: f64 = 0.05;
 const DELAY: f64 = 0.1;
 const DELAY_EXPLAINS: f64 = 0.5;
 /// Roughness of a free flight over that of the other one below which its signal is held at a limit; steps of the resolution that the larger
-/// one has to exceed; samples a period of the bandwidth that show it, and how many of them each flight has to have.
+/// one has to exceed; and independent samples that each flight has to have.
 const HELD: f64 = 0.5;
 const ROUGH_STEPS: f64 = 1.5;
-const ROUGH_PER_PERIOD: f64 = 4.0;
 const ROUGH_SAMPLES: usize = 30;
 
 /// Half widths of the 95 % interval by which an excess of energy is hardly chance, and by which it is none.
@@ -245,9 +244,7 @@ impl Alignment<'_> {
             return false;
         };
         let sides = [&seen.free.before, &seen.free.after];
-        let [start, end] = self.whole();
-        let interval = (end - start) / self.record.time.len() as f64;
-        let spacing = (1.0 / (ROUGH_PER_PERIOD * self.bandwidth * interval)).round().max(1.0) as usize;
+        let spacing = independent(&self.record.time, self.bandwidth);
         if sides.iter().any(|side| side.len() < ROUGH_SAMPLES * spacing) {
             return false;
         }

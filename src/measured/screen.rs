@@ -119,6 +119,12 @@ pub(super) fn resolution(values: &[f64]) -> f64 {
     steps.filter(|step| *step > 0.0).reduce(f64::min).unwrap_or(0.0)
 }
 
+/// Samples of a record, at times `time` in s, after which noise limited to `bandwidth` in Hz is another one: a quarter of its period.
+pub(super) fn independent(time: &[f64], bandwidth: f64) -> usize {
+    let interval = (time[time.len() - 1] - time[0]) / time.len() as f64;
+    (1.0 / (4.0 * bandwidth * interval)).round().max(1.0) as usize
+}
+
 /// Median size of the second differences of values that are `spacing` samples apart: of noise, as courses and disturbances are smooth, and
 /// jumps are few.
 pub(super) fn roughness(values: &[f64], spacing: usize) -> f64 {
