@@ -2,11 +2,11 @@
 
 use super::column::{Column, Titles};
 use super::no_time;
-use super::series::{self, Columns, MOST, Signal};
+use super::series::{self, Columns, MOST, ReadSignal};
 
 /// One channel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Channel {
+pub struct RawChannel {
     /// Its name.
     pub name: String,
     /// Its unit; empty if the file states none.
@@ -52,7 +52,7 @@ fn is_universal(bytes: &[u8]) -> bool {
         && lines.next().is_some_and(|line| line.starts_with(|c: char| c.is_ascii_digit()))
 }
 
-pub(super) fn titles(channels: &[Channel]) -> Titles {
+pub(super) fn titles(channels: &[RawChannel]) -> Titles {
     Titles {
         headings: channels.iter().map(|channel| channel.name.clone()).collect(),
         units: channels.iter().map(|channel| channel.unit.clone()).collect(),
@@ -65,7 +65,7 @@ pub(super) fn titles(channels: &[Channel]) -> Titles {
 /// # Errors
 /// One sentence with the channel.
 pub(super) fn read(
-    channels: &[Channel],
+    channels: &[RawChannel],
     even: Option<[f64; 2]>,
     times: Option<&Column>,
     wanted: &[&Column],
@@ -102,11 +102,11 @@ pub(super) fn read(
         let clock = if stated { own(column).filter(|clock| *clock != time) } else { None };
         let expected = clock.as_ref().map_or(time.len(), Vec::len);
         match values.len() == expected {
-            true => Ok(Signal { column, values, clock }),
+            true => Ok(ReadSignal { column, values, clock }),
             false => Err(format!("{} has {} samples, its times are {expected}", column.name, values.len())),
         }
     });
-    let signals = signals.collect::<Result<Vec<Signal>, String>>()?;
+    let signals = signals.collect::<Result<Vec<ReadSignal>, String>>()?;
     if time.len() > MOST {
         return Err(format!("has {} samples; {MOST} are the most", time.len()));
     }
@@ -121,8 +121,8 @@ fn evenly(start: f64, interval: f64, count: usize) -> Vec<f64> {
 /// Of samples at the same time the last one stays: programs write the state before and after an event.
 fn increasing<'c>(
     time: Vec<f64>,
-    mut signals: Vec<Signal<'c>>,
-) -> Result<(Vec<f64>, Vec<Signal<'c>>), String> {
+    mut signals: Vec<ReadSignal<'c>>,
+) -> Result<(Vec<f64>, Vec<ReadSignal<'c>>), String> {
     if let Some(k) = (1..time.len()).find(|k| !(time[*k] >= time[k - 1])) {
         return Err(format!(
             "sample {}: time is {} s, not after {} s of the one before",
@@ -147,12 +147,18 @@ mod tests {
     use crate::kinds::KINDS;
     use crate::result::Curve;
 
-    fn channel(name: &str, unit: &str, clock: ChannelClock, count: usize, value: fn(f64) -> f64) -> Channel {
+    fn channel(
+        name: &str,
+        unit: &str,
+        clock: ChannelClock,
+        count: usize,
+        value: fn(f64) -> f64,
+    ) -> RawChannel {
         let values = (0..count).map(|k| value(k as f64)).collect();
-        Channel { name: name.into(), unit: unit.into(), values, clock }
+        RawChannel { name: name.into(), unit: unit.into(), values, clock }
     }
 
-    fn read(channels: &[Channel], map: &str) -> Result<Columns, String> {
+    fn read(channels: &[RawChannel], map: &str) -> Result<Columns, String> {
         let known: Vec<Curve> = KINDS.iter().flat_map(|kind| kind.curves()).cloned().collect();
         read_channels(channels, &Map::parse(map).expect("a map"), &known, 32).map(|read| read.columns)
     }

@@ -9,7 +9,7 @@ mod rows;
 mod series;
 mod text;
 
-pub use channels::{Channel, ChannelClock, binary_format};
+pub use channels::{ChannelClock, RawChannel, binary_format};
 pub use column::{Column, Measures, Titles, known_column, unit_in_si};
 pub use layout::TextLayout;
 pub use map::{Map, Provenance};
@@ -34,14 +34,14 @@ pub struct ReadTable {
 
 /// What a file consists of.
 #[derive(Debug, Clone)]
-pub enum Source<'b> {
+pub enum RecordSource<'b> {
     /// A table of text.
     Text(Cow<'b, str>),
     /// Channels of a binary format.
-    Channels(Vec<Channel>),
+    Channels(Vec<RawChannel>),
 }
 
-impl Source<'_> {
+impl RecordSource<'_> {
     /// Reads the curves, which `map` describes as far as it says anything; `known` are the curves there are, and it needs `fewest` samples at
     /// least.
     ///
@@ -49,13 +49,13 @@ impl Source<'_> {
     /// One sentence: the line, the column, the channel or the part of the map at fault.
     pub fn read(&self, map: &Map, known: &[Curve], fewest: usize) -> Result<ReadTable, String> {
         match self {
-            Source::Text(text) => read(text, map, known, fewest),
-            Source::Channels(channels) => read_channels(channels, map, known, fewest),
+            RecordSource::Text(text) => read(text, map, known, fewest),
+            RecordSource::Channels(channels) => read_channels(channels, map, known, fewest),
         }
     }
 }
 
-/// Reads the curves of the table in `text`; see [`Source::read`].
+/// Reads the curves of the table in `text`; see [`RecordSource::read`].
 ///
 /// # Errors
 /// As there.
@@ -76,9 +76,9 @@ pub fn read(text: &str, map: &Map, known: &[Curve], fewest: usize) -> Result<Rea
     Ok(ReadTable { columns, map: map_of(map, &form, &layout.titles, &all), how: in_words(&how) })
 }
 
-/// Reads the curves of `channels`; see [`Source::read`].
+/// Reads the curves of `channels`; see [`RecordSource::read`].
 fn read_channels(
-    channels: &[Channel],
+    channels: &[RawChannel],
     map: &Map,
     known: &[Curve],
     fewest: usize,

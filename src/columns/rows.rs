@@ -2,7 +2,7 @@
 
 use super::column::Column;
 use super::layout::{self, TextLayout};
-use super::series::{self, Columns, MOST, Signal};
+use super::series::{self, Columns, MOST, ReadSignal};
 
 /// What programs write for a value that is missing.
 const MISSING: [&str; 7] = ["", "nan", "-nan", "n/a", "#n/a", "--", "null"];
@@ -136,7 +136,7 @@ impl<'t> RowsSoFar<'t> {
         let signals =
             self.columns.iter().zip(self.values).zip(self.own_times).map(|((column, values), times)| {
                 let clock = column.clock.map(|_| times.iter().map(|t| t * scale).collect());
-                Signal { column, values, clock }
+                ReadSignal { column, values, clock }
             });
         series::columns(self.time, signals.collect(), fewest)
     }

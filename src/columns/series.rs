@@ -20,7 +20,7 @@ pub struct Columns {
 }
 
 /// What a file says of a signal.
-pub(super) struct Signal<'c> {
+pub(super) struct ReadSignal<'c> {
     pub column: &'c Column,
     /// In its SI unit, not a number where they are missing.
     pub values: Vec<f64>,
@@ -32,13 +32,13 @@ pub(super) struct Signal<'c> {
 ///
 /// # Errors
 /// One sentence with the signal.
-pub(super) fn columns(time: Vec<f64>, signals: Vec<Signal>, fewest: usize) -> Result<Columns, String> {
+pub(super) fn columns(time: Vec<f64>, signals: Vec<ReadSignal>, fewest: usize) -> Result<Columns, String> {
     let samples = time.len();
     if samples < fewest {
         return Err(format!("has {samples} samples; at least {fewest} are needed"));
     }
     let (mut values, mut gaps, mut integrals) = (Vec::new(), Vec::new(), Vec::new());
-    for Signal { column, values: mut own, clock } in signals {
+    for ReadSignal { column, values: mut own, clock } in signals {
         let missing = filled(column.name, clock.as_deref().unwrap_or(&time), &mut own)?;
         gaps.extend(missing.into_iter().map(|span| (column.name, span)));
         if clock.is_some() || column.delay != 0.0 {

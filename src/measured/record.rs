@@ -1,7 +1,7 @@
 //! A record from a file: times and signals.
 
 use super::filter::SIGNALS;
-use crate::columns::{Columns, Map, ReadTable, Source};
+use crate::columns::{Columns, Map, ReadTable, RecordSource};
 use crate::curves::MonotoneCubic;
 use crate::error::{Error, Result};
 use crate::kinds::KINDS;
@@ -55,7 +55,7 @@ impl Record {
     ///
     /// # Errors
     /// [`Error::Scene`] if it is no record.
-    pub fn of(file: &Path, source: &Source, map: &Map) -> Result<ReadRecord> {
+    pub fn of(file: &Path, source: &RecordSource, map: &Map) -> Result<ReadRecord> {
         Self::parse(file, source, map).map_err(|reason| {
             Error::Scene(miette::miette!(
                 help = "headings such as `time [us],outer_velocity [mm/s],inner_velocity [mm/s]` need no map; for others name a map with --map",
@@ -65,7 +65,7 @@ impl Record {
         })
     }
 
-    fn parse(file: &Path, source: &Source, map: &Map) -> std::result::Result<ReadRecord, String> {
+    fn parse(file: &Path, source: &RecordSource, map: &Map) -> std::result::Result<ReadRecord, String> {
         let known: Vec<Curve> = KINDS.iter().flat_map(|kind| kind.curves()).cloned().collect();
         let ReadTable { columns, map, how } = source.read(map, &known, FEWEST)?;
         // histories of this program have more curves than instruments show
@@ -178,7 +178,8 @@ mod tests {
     }
 
     fn parse(text: &str) -> std::result::Result<Record, String> {
-        Record::parse(Path::new("r.csv"), &Source::Text(text.into()), &Map::default()).map(|read| read.record)
+        Record::parse(Path::new("r.csv"), &RecordSource::Text(text.into()), &Map::default())
+            .map(|read| read.record)
     }
 
     #[test]
@@ -215,7 +216,7 @@ mod tests {
     fn a_map_says_what_a_file_does_not() {
         let read = |map: &str, text: &str| {
             let map = Map::parse(map).expect("a map");
-            Record::parse(Path::new("r.csv"), &Source::Text(text.into()), &map)
+            Record::parse(Path::new("r.csv"), &RecordSource::Text(text.into()), &map)
                 .map(|read| read.record)
                 .expect("a record")
         };
@@ -251,10 +252,12 @@ mod tests {
     fn the_map_of_what_was_inferred_reads_the_same() {
         let lines = (0..40).map(|k| format!("{k},5;{};{}", -k, k)).collect::<Vec<_>>().join("\n");
         let text = format!("; made by x\ntime;outer_acceleration;inner_displacement\nus;m/s2;mm\n{lines}\n");
-        let first = Record::parse(Path::new("r.csv"), &Source::Text(text.as_str().into()), &Map::default())
-            .expect("a record");
+        let first =
+            Record::parse(Path::new("r.csv"), &RecordSource::Text(text.as_str().into()), &Map::default())
+                .expect("a record");
         let map = Map::parse(&first.map).expect("a map");
-        let again = Record::parse(Path::new("r.csv"), &Source::Text(text.into()), &map).expect("a record");
+        let again =
+            Record::parse(Path::new("r.csv"), &RecordSource::Text(text.into()), &map).expect("a record");
         assert_eq!(first.record, again.record);
         assert!((first.record.time[1] - 1.5e-6).abs() < 1e-18, "{}", first.map);
     }

@@ -2,7 +2,7 @@
 
 use super::kinds::run_to_end;
 use super::python;
-use crate::columns::{Channel, ChannelClock, Map, Source, binary_format, decoded};
+use crate::columns::{ChannelClock, Map, RawChannel, RecordSource, binary_format, decoded};
 use crate::interrupt::Scratch;
 use crate::{Error, Result};
 use serde::Deserialize;
@@ -12,11 +12,11 @@ use std::path::Path;
 ///
 /// # Errors
 /// [`Error::Scene`] if it can't be read, [`Error::Solver`] if the Python or the library for it is missing.
-pub fn record_source<'b>(file: &Path, bytes: &'b [u8], map: &Map) -> Result<Source<'b>> {
+pub fn record_source<'b>(file: &Path, bytes: &'b [u8], map: &Map) -> Result<RecordSource<'b>> {
     match binary_format(bytes) {
-        Some(_) => channels(file).map(Source::Channels),
+        Some(_) => channels(file).map(RecordSource::Channels),
         None => decoded(bytes, map.table.encoding.as_deref())
-            .map(Source::Text)
+            .map(RecordSource::Text)
             .map_err(|reason| Error::Scene(miette::miette!("{}: {reason}", file.display()))),
     }
 }
@@ -37,7 +37,7 @@ struct HeadColumn {
     time: Option<usize>,
 }
 
-fn channels(file: &Path) -> Result<Vec<Channel>> {
+fn channels(file: &Path) -> Result<Vec<RawChannel>> {
     let python = python::reader()?;
     let mut command = python::fem_reference(&python)?;
     // it runs in the project's folder
@@ -52,7 +52,7 @@ fn channels(file: &Path) -> Result<Vec<Channel>> {
 }
 
 /// The channels in a line of JSON with little-endian numbers below it; `None` if that is not what `bytes` are.
-fn parsed(bytes: &[u8]) -> Option<Vec<Channel>> {
+fn parsed(bytes: &[u8]) -> Option<Vec<RawChannel>> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     let head: Head = serde_json::from_slice(&bytes[..end]).ok()?;
     let (numbers, rest) = bytes[end + 1..].as_chunks::<8>();
@@ -61,7 +61,7 @@ fn parsed(bytes: &[u8]) -> Option<Vec<Channel>> {
         return None;
     }
     let mut numbers = numbers.iter().map(|number| f64::from_le_bytes(*number));
-    let channel = |column: HeadColumn| Channel {
+    let channel = |column: HeadColumn| RawChannel {
         values: numbers.by_ref().take(column.rows).collect(),
         clock: match (column.start.zip(column.interval), column.time) {
             (Some((start, interval)), _) => ChannelClock::Even([start, interval]),

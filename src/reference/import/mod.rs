@@ -7,7 +7,7 @@ use super::entry::{self, Origin, Stored};
 use super::record_source;
 use super::store::Installed;
 use super::{Resolution, Store, identity};
-use crate::columns::{Columns, Map, Source, decoded};
+use crate::columns::{Columns, Map, RecordSource, decoded};
 use crate::external;
 use crate::kinds;
 use crate::result::{History, Outcome, Summary, Table};
@@ -75,21 +75,21 @@ impl Imported {
 }
 
 /// What a file of any of the forms known consists of.
-fn source<'b>(file: &Path, bytes: &'b [u8], mapping: &Map) -> Result<Source<'b>> {
+fn source<'b>(file: &Path, bytes: &'b [u8], mapping: &Map) -> Result<RecordSource<'b>> {
     let unusable = |reason: String| Error::Reference(format!("{}: {reason}", file.display()));
     let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     let text = || decoded(bytes, mapping.table.encoding.as_deref()).map_err(unusable);
     match ending.as_deref() {
-        Some("dat") => Ok(Source::Text(calculix::dat(&text()?).map_err(unusable)?.into())),
+        Some("dat") => Ok(RecordSource::Text(calculix::dat(&text()?).map_err(unusable)?.into())),
         Some("frd") => {
-            Ok(Source::Text(calculix::frd(&text()?, &mapping.headings()).map_err(unusable)?.into()))
+            Ok(RecordSource::Text(calculix::frd(&text()?, &mapping.headings()).map_err(unusable)?.into()))
         }
         _ => record_source(file, bytes, mapping),
     }
 }
 
 /// The curves of a file, from the first touch on.
-fn history(scene: &Scene, source: &Source, mapping: &Map) -> std::result::Result<History, String> {
+fn history(scene: &Scene, source: &RecordSource, mapping: &Map) -> std::result::Result<History, String> {
     let kind = kinds::of(scene);
     let found = source.read(mapping, kind.curves(), FEWEST)?;
     external::assembled(kind, from_first_contact(found.columns)?)
