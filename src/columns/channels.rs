@@ -123,7 +123,10 @@ fn increasing<'c>(
     time: Vec<f64>,
     mut signals: Vec<ReadSignal<'c>>,
 ) -> Result<(Vec<f64>, Vec<ReadSignal<'c>>), String> {
-    if let Some(k) = (1..time.len()).find(|k| !(time[*k] >= time[k - 1])) {
+    if let Some(k) = time.iter().position(|t| t.is_nan()) {
+        return Err(format!("sample {}: time is missing", k + 1));
+    }
+    if let Some(k) = (1..time.len()).find(|k| time[*k] < time[k - 1]) {
         return Err(format!(
             "sample {}: time is {} s, not after {} s of the one before",
             k + 1,
@@ -197,7 +200,9 @@ mod tests {
         channels[0].values[11] = 10.0;
         let columns = read(&channels, "").expect("a record");
         assert_eq!((columns.time.len(), columns.values[0].1[10]), (49, 11.0));
-        channels[0].values[11] = 9.0;
+        channels[0].values[3] = f64::NAN;
+        assert!(read(&channels, "").expect_err("a gap").contains("sample 4: time is missing"));
+        (channels[0].values[3], channels[0].values[11]) = (3.0, 9.0);
         assert!(read(&channels, "").expect_err("back in time").contains("sample 12: time is"));
     }
 

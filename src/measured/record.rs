@@ -85,7 +85,7 @@ impl Record {
     fn is_computed(&self) -> bool {
         let zeros = ["outer_displacement", "inner_displacement", "outer_force", "inner_force"];
         let is_zero = |name: &&str| self.channel(name).is_some_and(|channel| channel.values[0] == 0.0);
-        self.time[0] == 0.0 && zeros.iter().all(|name| is_zero(name))
+        self.time[0] == 0.0 && zeros.iter().all(is_zero)
     }
 
     /// A computed history with the free flights that it leaves out: before the first touch, and behind its end if no force acts there.

@@ -128,7 +128,7 @@ fn measured_files_are_compared_with_the_models_alone() {
     let folder = tempfile::tempdir().unwrap();
     let record = measured(folder.path(), "record.csv", 5.0);
     let scene = include_str!("../../scenes/scaled-plate-r10.toml").replace("scaled-plate-r10", "mine");
-    let scene = file(folder.path(), "mine.toml", &scene.split("# The gate.").next().unwrap());
+    let scene = file(folder.path(), "mine.toml", scene.split("# The gate.").next().unwrap());
     let out = folder.path().join("report");
     let arguments =
         ["compare", text(&scene), "--models", "A,C", "--measured", text(&record), "--out", text(&out)];
