@@ -60,6 +60,7 @@ pub fn doctor(store: &Store) -> Vec<Check> {
         install: "make setup".to_owned(),
         optional: true,
     });
+    checks.push(record_readers(chosen));
     checks.push(store_folder(store));
     for path in shipped().unwrap_or_default() {
         if let Ok(scene) = Scene::read(&path) {
@@ -224,6 +225,29 @@ fn mujoco() -> Option<String> {
     let script = "import importlib.metadata as m; print(m.version('mujoco'))";
     let output = Command::new(python).args(["-c", script]).stdin(Stdio::null()).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+/// The libraries that read records in binary formats.
+fn record_readers(chosen: Option<&Interpreter>) -> Check {
+    let libraries = "pyuff npTDMS h5py pyarrow";
+    let script = format!(
+        "import importlib.metadata as m\nfor n in '{libraries}'.split():\n try: print(n, m.version(n))\n except m.PackageNotFoundError: pass"
+    );
+    let listed = chosen.and_then(|i| {
+        let output = Command::new(&i.path).args(["-c", &script]).stdin(Stdio::null()).output().ok()?;
+        Some(String::from_utf8_lossy(&output.stdout).trim().replace('\n', ", "))
+    });
+    Check {
+        name: "record formats".to_owned(),
+        found: listed.filter(|listed| !listed.is_empty()),
+        needed_for: "measured records as UFF 58, TDMS, MATLAB 7.3, HDF5 and Parquet (`--measured`)"
+            .to_owned(),
+        install: match chosen {
+            Some(i) => format!("{} -m pip install {libraries}", i.path.display()),
+            None => format!("pip install {libraries}"),
+        },
+        optional: true,
+    }
 }
 
 fn store_folder(store: &Store) -> Check {

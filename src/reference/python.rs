@@ -51,7 +51,7 @@ impl Purpose {
             ],
             Purpose::Records => [
                 "a record in a binary format needs a Python that imports numpy and scipy",
-                "install them with `pip install \"impactcheck[records]\"`, or export the record as text (CSV)",
+                "install them with `pip install numpy scipy pyuff npTDMS h5py pyarrow`, or export the record as text (CSV)",
             ],
         }
     }
