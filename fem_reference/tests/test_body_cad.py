@@ -125,7 +125,9 @@ def test_normal_curvature_and_wall_are_those_of_the_closed_form(
 ) -> None:
     result = made(write_cad(tmp_path / "part.step", build), list(at), 2.0)
     contact = outer_of(result)
-    assert np.allclose(contact["point"], at, atol=1e-9)
+    # on the seam gmsh places a node to 1e-3 of an element only
+    seam = build is cylinder and at[1] == 0.0
+    assert np.allclose(contact["point"], at, atol=1e-3 * contact["element_size"] if seam else 1e-9)
     assert np.allclose(contact["normal"], normal, atol=1e-4)
     assert np.allclose(contact["curvatures"], curvatures, rtol=1e-6, atol=1e-6)
     assert contact["wall"] == pytest.approx(wall, rel=0.03)
@@ -170,8 +172,9 @@ def test_walls_drive_the_sizes(tmp_path: Path) -> None:
     top = (np.abs(found.places[:, 2] - 2.0) < 1e-6) & (found.places[:, 0] > 13.0)
     assert np.allclose(found.thickness[top], 2.0)
     thin, thick = sizes.at(np.array([[30.0, 10.0, 2.0], [6.0, 10.0, 12.0]])) / sizes.scale
-    assert thin == pytest.approx(0.68 * 2.0, rel=0.02)
-    assert 2.0 * thin < thick <= 0.68 * 12.0
+    # two elements through a wall
+    assert thin == pytest.approx(2.0 / 2, rel=0.02)
+    assert 2.0 * thin < thick <= 12.0 / 2
     assert np.allclose(bounded.far, 1.0)
     # sizes that would take too many unknowns are made larger
     assert coarser.scale > 1.0 and coarser.dofs == pytest.approx(250_000, rel=0.07)

@@ -215,7 +215,7 @@ def test_a_small_impact_keeps_its_balances_and_agrees_with_the_explicit_solver(
     found = {}
     for by in (calculix, solve):
         settings = Settings(0.9, tmp_path / by.__name__, 0.0, "test")
-        solution = by.compute(scene, file, 0.3, settings, MPI.COMM_SELF, lambda *_: None)
+        solution = by.compute(scene, file, 0.4, settings, MPI.COMM_SELF, lambda *_: None)
         found[by] = quantities(scene, solution)
         run = solution.run
         assert run.momentum_residual < 2e-3
