@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 
 from ..common.arrays import Floats
 from .loop import Loop
-from .spectrum import CG_TOLERANCE, conjugate_gradients, free_components
+from .spectrum import CG_TOLERANCE, Precondition, conjugate_gradients, free_components
 
 RELIEVED_TOLERANCE = 1e-4
 """Of the static solution of a free body."""
@@ -60,10 +59,6 @@ class FreeMotions:
         for rigid, _ in self.motions:
             force = force - self._mass * rigid * self._loop.dot(rigid, force)
         return force
-
-
-Precondition = Callable[[Floats], Floats]
-"""See `conjugate_gradients`."""
 
 
 def static_shape(

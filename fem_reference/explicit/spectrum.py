@@ -18,6 +18,9 @@ LANCZOS_TOLERANCE = 1e-5
 CG_STEPS = 20000
 CG_TOLERANCE = 1e-7
 
+Precondition = Callable[[Floats], Floats]
+"""A symmetric approximation of K^-1."""
+
 
 def critical_time_step(loop: Loop) -> float:
     """2 / omega_max of the lumped system, s, from a safe upper estimate of omega_max.
@@ -59,12 +62,12 @@ def conjugate_gradients(
     project: Callable[[Floats], Floats] = lambda x: x,
     start: Floats | None = None,
     tolerance: float = CG_TOLERANCE,
-    precondition: Callable[[Floats], Floats] | None = None,
+    precondition: Precondition | None = None,
 ) -> Floats:
     """K^-1 load on the components where ``free`` is 1.
 
-    ``project`` takes the motions out of a residual that cost no energy; ``precondition`` is
-    symmetric, by default the inverse of the diagonal.
+    ``project`` takes the motions out of a residual that cost no energy; ``precondition``
+    is by default the inverse of the diagonal.
 
     Raises:
         SolverError: no convergence.
@@ -172,7 +175,7 @@ def first_frequency(
     tolerance: float = 1e-6,
     start: Floats | None = None,
     floating: Floating | None = None,
-    precondition: Callable[[Floats], Floats] | None = None,
+    precondition: Precondition | None = None,
 ) -> float:
     """Lowest eigenfrequency of a body, Hz, by inverse iteration from the motion along ``axis``.
 

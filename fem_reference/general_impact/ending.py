@@ -26,14 +26,19 @@ class Bodies:
 
     def __init__(self, loop: Loop, made: ImpactModel) -> None:
         self.loop, self.made = loop, made
-        model = made.model
-        self.floating = [FreeMotions(loop, k) for k in range(len(model.elastic))]
-        self.precondition = [
-            TwoLevel(loop, body.mesh, body.material, int(model.first[k]), free_components(loop, k))
-            if body.mesh.order == 2
-            else None
-            for k, body in enumerate(model.elastic)
-        ]
+        self.floating = [FreeMotions(loop, k) for k in range(len(made.model.elastic))]
+        self._two_levels: dict[int, TwoLevel] = {}
+
+    def precondition(self, number: int) -> TwoLevel | None:
+        """For static solutions of a body; None: its mesh is linear, and the diagonal serves."""
+        loop, model = self.loop, self.made.model
+        body, first = model.elastic[number], int(model.first[number])
+        if body.mesh.order == 1:
+            return None
+        if number not in self._two_levels:
+            free = free_components(loop, number)
+            self._two_levels[number] = TwoLevel(loop, body.mesh, body.material, first, free)
+        return self._two_levels[number]
 
     def rigid(self, load: Floats, vector: Floats, body: int) -> float:
         """What the rigid motion in a displacement or velocity (3 n,) comes to under a load."""
@@ -51,7 +56,7 @@ class Bodies:
         shapes = [
             static_shape(
                 *(self.loop, STRUCK, side.patch.load(self.loop, STRUCK)),
-                *(floating, self.precondition[STRUCK]),
+                *(floating, self.precondition(STRUCK)),
             )
             for side in self.made.sides
         ]
@@ -61,12 +66,12 @@ class Bodies:
             tolerance=FREQUENCY_TOLERANCE,
             start=np.sum(shapes, axis=0),
             floating=floating,
-            precondition=self.precondition[STRUCK],
+            precondition=self.precondition(STRUCK),
         )
 
     def flexibility(self, body: int, load: Floats) -> float:
         """Static flexibility of a body under a unit load, m/N."""
-        return flexibility(self.loop, body, load, self.floating[body], self.precondition[body])
+        return flexibility(self.loop, body, load, self.floating[body], self.precondition(body))
 
 
 @dataclass(frozen=True)

@@ -59,6 +59,11 @@ pub(super) struct MeasuredAlone {
     pub(super) measured: Measured,
 }
 
+/// The results of models with their names.
+fn named(reduced: &[Outcome]) -> impl DoubleEndedIterator<Item = (&str, &Outcome)> {
+    reduced.iter().map(|outcome| (outcome.summary.model.as_deref().unwrap_or_default(), outcome))
+}
+
 impl<'a> Job<'a> {
     pub(super) fn read(context: &Context, arguments: &'a Arguments) -> Result<Self> {
         let mut scenes = compare_inputs::scenes(&arguments.scenes)?;
@@ -126,7 +131,7 @@ impl<'a> Job<'a> {
         &self.arguments.out
     }
 
-    /// The scene with its measured records beside its models alone: there is no reference.
+    /// The measured records of the scene compared with its models alone, without a reference.
     ///
     /// # Errors
     /// Those of models and records; [`Error::Usage`] if no model runs without a reference.
@@ -136,13 +141,11 @@ impl<'a> Job<'a> {
         };
         let reduced =
             kinds::of(scene).alone(scene, (&self.arguments.models[..], self.arguments.tolerance))?;
-        let mut partners: Vec<_> =
-            reduced.iter().map(|o| (o.summary.model.as_deref().unwrap_or_default(), o)).collect();
         // the finest model stands for the reference
-        partners.reverse();
+        let comparators: Vec<_> = named(&reduced).rev().collect();
         let propagations = propagate(context, file, scene, &reduced)?;
         let how = (self.arguments.bandwidth, self.arguments.speed);
-        let measured = measured::compare(scene, &self.records, &partners, how, &propagations)?;
+        let measured = measured::compare(scene, &self.records, &comparators, how, &propagations)?;
         let summaries = reduced.iter().map(|outcome| outcome.summary.clone()).collect();
         Ok(MeasuredAlone {
             schema_version: SCHEMA_VERSION,
@@ -221,9 +224,9 @@ impl<'a> Job<'a> {
         });
         let how = (self.arguments.bandwidth, self.arguments.speed);
         let measured = (!self.records.is_empty()).then(|| {
-            let models = reduced.iter().map(|o| (o.summary.model.as_deref().unwrap_or_default(), o));
-            let partners: Vec<_> = std::iter::once((measured::REFERENCE, reference)).chain(models).collect();
-            measured::compare(scene, &self.records, &partners, how, &propagations)
+            let reference = std::iter::once((measured::REFERENCE, reference));
+            let comparators: Vec<_> = reference.chain(named(reduced)).collect();
+            measured::compare(scene, &self.records, &comparators, how, &propagations)
         });
         let input = ComparisonInput {
             coarser: coarser.as_ref().map(|(stored, reduced)| (&stored.outcome, &reduced[..])),

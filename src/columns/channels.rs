@@ -28,20 +28,12 @@ pub enum ChannelClock {
     Unknown,
 }
 
-/// First bytes of the binary formats.
-const BEGINNINGS: [(&[u8], &str); 6] = [
-    (b"TDSm", "TDMS"),
-    (b"\x89HDF", "HDF5"),
-    (b"MATLAB 5.0", "MATLAB"),
-    (b"MATLAB 7.3", "MATLAB"),
-    (b"PAR1", "Parquet"),
-    (b"RIFF", "WAV"),
-];
+/// First bytes of TDMS, HDF5, MATLAB, Parquet and WAV files.
+const BEGINNINGS: [&[u8]; 6] = [b"TDSm", b"\x89HDF", b"MATLAB 5.0", b"MATLAB 7.3", b"PAR1", b"RIFF"];
 
-/// The format of a file that begins with `bytes`, if it is not read as text here.
-pub fn binary_format(bytes: &[u8]) -> Option<&'static str> {
-    let begins = BEGINNINGS.iter().find(|(beginning, _)| bytes.starts_with(beginning));
-    begins.map(|(_, name)| *name).or_else(|| is_universal(bytes).then_some("UFF"))
+/// Whether a file that begins with `bytes` has a format that is not read as text here: one of these, or UFF.
+pub fn is_binary(bytes: &[u8]) -> bool {
+    BEGINNINGS.iter().any(|beginning| bytes.starts_with(beginning)) || is_universal(bytes)
 }
 
 /// Whether it is a universal file: a line with -1, below it the number of a data set.
@@ -232,10 +224,11 @@ mod tests {
 
     #[test]
     fn formats_are_known_by_their_first_bytes() {
-        assert_eq!(binary_format(b"TDSm\x0e\0"), Some("TDMS"));
-        assert_eq!(binary_format(b"    -1\n    58\nNONE\n"), Some("UFF"));
-        assert_eq!(binary_format(b"    -1\r\n    58b     1\r\n"), Some("UFF"));
-        assert_eq!(binary_format(b"-1,58\n0,1\n"), None);
-        assert_eq!(binary_format("time,v\n0,1\n".as_bytes()), None);
+        for bytes in [&b"TDSm\x0e\0"[..], b"    -1\n    58\nNONE\n", b"    -1\r\n    58b     1\r\n"] {
+            assert!(is_binary(bytes));
+        }
+        for text in ["-1,58\n0,1\n", "time,v\n0,1\n"] {
+            assert!(!is_binary(text.as_bytes()));
+        }
     }
 }

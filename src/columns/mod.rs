@@ -9,7 +9,7 @@ mod rows;
 mod series;
 mod text;
 
-pub use channels::{ChannelClock, RawChannel, binary_format};
+pub use channels::{ChannelClock, RawChannel, is_binary};
 pub use column::{Column, Measures, Titles, known_column, unit_in_si};
 pub use layout::TextLayout;
 pub use map::{Map, Provenance};

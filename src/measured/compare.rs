@@ -17,7 +17,7 @@ use crate::uncertainty::validation::{Assessment, numerical, propagated_of};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Name of the reference among the partners.
+/// Name of the reference among the comparators.
 pub const REFERENCE: &str = "reference";
 
 /// Measured records of one scene beside its models; part of the comparison document.
@@ -93,22 +93,22 @@ pub struct MeasuredComparison {
     pub filtered: Vec<SampledCurve>,
 }
 
-/// Aligns `records` with the first of the `partners` (names and results) and compares all of them with the first record; `propagations` are
+/// Aligns `records` with the first of the `comparators` (names and results) and compares all of them with the first record; `propagations` are
 /// the propagated uncertainties of the scene's inputs, by the name of the model, empty if they are certain.
 ///
 /// # Errors
-/// [`Error::Reference`] if the first partner's history can't be used, [`Error::Scene`] if a record can't be aligned,
-/// [`Error::Usage`] if there is no record or partner, or the bandwidth is not usable.
+/// [`Error::Reference`] if the first comparator's history can't be used, [`Error::Scene`] if a record can't be aligned,
+/// [`Error::Usage`] if there is no record or comparator, or the bandwidth is not usable.
 pub fn compare(
     scene: &Scene,
     records: &[Record],
-    partners: &[(&str, &Outcome)],
+    comparators: &[(&str, &Outcome)],
     (bandwidth, speed): (f64, Speed),
     propagations: &BTreeMap<String, PropagatedUncertainty>,
 ) -> Result<Measured> {
     let kind = kinds::of(scene);
     let approach = kind.approach(scene)?;
-    let Some(((lead, first), others)) = partners.split_first() else {
+    let Some(((lead, first), others)) = comparators.split_first() else {
         return Err(Error::Usage("there is no result to compare the record with".into()));
     };
     let who = if *lead == REFERENCE { "the reference".to_owned() } else { format!("model {lead}") };

@@ -2,7 +2,7 @@
 
 use super::kinds::run_to_end;
 use super::python;
-use crate::columns::{ChannelClock, Map, RawChannel, RecordSource, binary_format, decoded};
+use crate::columns::{ChannelClock, Map, RawChannel, RecordSource, decoded, is_binary};
 use crate::interrupt::Scratch;
 use crate::{Error, Result};
 use serde::Deserialize;
@@ -13,9 +13,9 @@ use std::path::Path;
 /// # Errors
 /// [`Error::Scene`] if it can't be read, [`Error::Solver`] if the Python or the library for it is missing.
 pub fn record_source<'b>(file: &Path, bytes: &'b [u8], map: &Map) -> Result<RecordSource<'b>> {
-    match binary_format(bytes) {
-        Some(_) => channels(file).map(RecordSource::Channels),
-        None => decoded(bytes, map.table.encoding.as_deref())
+    match is_binary(bytes) {
+        true => channels(file).map(RecordSource::Channels),
+        false => decoded(bytes, map.table.encoding.as_deref())
             .map(RecordSource::Text)
             .map_err(|reason| Error::Scene(miette::miette!("{}: {reason}", file.display()))),
     }

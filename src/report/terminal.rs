@@ -152,15 +152,16 @@ fn measured_table(found: &Measured) -> String {
     let mut table = TextTable { rows: Vec::new() };
     let headings = ["efficiency, %", "E, points", "95 %"].map(str::to_owned);
     table.row("against measured", headings.into(), String::new());
-    for partner in &found.partners {
-        let Some((efficiency, difference)) = partner.efficiency.zip(partner.efficiency_difference) else {
+    for comparator in &found.partners {
+        let Some((efficiency, difference)) = comparator.efficiency.zip(comparator.efficiency_difference)
+        else {
             continue;
         };
-        let of = partner.validation.as_ref();
+        let of = comparator.validation.as_ref();
         let band = of.map_or("–".to_owned(), |of| format!("±{}", points(COVERAGE * of.u_val)));
         let shows = of.map_or(String::new(), |of| of.verdict.words().to_owned());
         let cells = vec![significant(100.0 * efficiency, 4), points(difference), band];
-        table.row(&partner.partner, cells, shows);
+        table.row(&comparator.partner, cells, shows);
     }
     if table.rows.len() > 1 { table.text() } else { String::new() }
 }
