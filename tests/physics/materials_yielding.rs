@@ -250,6 +250,43 @@ fn the_elastic_limit_is_where_the_model_begins_to_yield() {
     assert_eq!(struck([false; 3], plate, 0.55, Model::B).elastic_limit, None);
 }
 
+/// A contact that the inner body's own speed makes yield has no limit in the outer body's; looking for one ends.
+#[test]
+fn no_outer_speed_keeps_elastic_what_the_inner_body_s_own_makes_yield() {
+    let text = r#"
+        name = "light"
+        kind = "plate-impact"
+
+        [materials]
+        stiff = { youngs_modulus = "159 GPa", poisson_ratio = 0.147, density = 2276, yield_strength = "444 MPa", hardening = "96 MPa" }
+        face = { youngs_modulus = "69.5 GPa", poisson_ratio = 0.286, density = 1486 }
+
+        [plate]
+        radius = "5.15 mm"
+        thickness = "1 mm"
+        edge = "simply-supported"
+        material = "face"
+        damping_ratio = 0.00665
+
+        [outer]
+        kind = "compact"
+        mass = "1 mg"
+        tip_radius = "0.75 mm"
+        material = "stiff"
+        speed = 2.63
+
+        [inner]
+        kind = "sphere"
+        radius = "0.49 mm"
+        material = "stiff"
+        speed = 2.35
+        "#;
+    let scene = Scene::parse("light", text).unwrap();
+    let limit = Reduced::new(&scene, Model::A, None).unwrap().run(1e-7).unwrap().elastic_limit.unwrap();
+    assert!(limit.outer.is_some_and(|speed| speed < 0.3), "{limit:?}");
+    assert_eq!(limit.inner, None);
+}
+
 /// On a plate that hardly gives way it is the closed form of a rigid wall (Johnson 1985, eq. 11.39): m V^2/2 = (8/15) E* R^(1/2) d^(5/2),
 /// d = R (pi p/(2 E*))^2, p = 1.615 Y at first yield (Jackson and Green 2005).
 #[test]

@@ -22,6 +22,8 @@ pub(super) const SAMPLES_PER_CONTACT: f64 = 400.0;
 /// Runs after which no elastic limit is found, and the relative change from one to the next that is in order.
 const MOST_RUNS: usize = 30;
 const CONVERGED: f64 = 1e-5;
+/// Speed of the outer body over the inner body's own below which the inner one decides what yields.
+const OWN_SPEED: f64 = 0.01;
 
 /// The impacts of a model.
 pub(super) struct Impacts<'a> {
@@ -141,7 +143,7 @@ impl Impacts<'_> {
                 if (growth - 1.0).abs() < CONVERGED {
                     return Some(speed);
                 }
-                if !speed.is_normal() {
+                if speed < OWN_SPEED * self.system.inner_speed.abs().max(f64::MIN_POSITIVE) {
                     return None;
                 }
             }

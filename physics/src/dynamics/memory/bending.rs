@@ -112,15 +112,21 @@ impl Bending {
     fn moment(&self, ring: f64, loads: &ForceHistory, end: usize) -> f64 {
         let ForceHistory { time, force: [outer, inner] } = loads;
         let force = |k: usize| outer[k] - inner[k];
+        let reach = |k: usize| self.spreading * (time[end] - 0.5 * (time[k] + time[k - 1]));
+        let weight = |reach: f64| (reach / ring.powi(2)).max(1.0).ln();
         let step = |k: usize| {
             let rise = force(k) - force(k - 1);
-            if rise == 0.0 {
-                return 0.0;
-            }
-            let reach = (self.spreading * (time[end] - 0.5 * (time[k] + time[k - 1]))).min(self.farthest);
-            rise * (reach / ring.powi(2)).max(1.0).ln()
+            if rise == 0.0 { 0.0 } else { rise * weight(reach(k)) }
         };
-        (1.0 + self.poisson_ratio) / (8.0 * PI) * (1..=end).map(step).sum::<f64>()
+        // what has come to the edge is at rest: there the rises add up to the force
+        let (mut settled, mut open) = (0, end);
+        while settled < open {
+            let middle = settled + (open - settled).div_ceil(2);
+            if reach(middle) >= self.farthest { settled = middle } else { open = middle - 1 }
+        }
+        let at_rest = (force(settled) - force(0)) * weight(self.farthest);
+        let rising = (settled + 1..=end).map(step).sum::<f64>();
+        (1.0 + self.poisson_ratio) / (8.0 * PI) * (at_rest + rising)
     }
 }
 

@@ -1,0 +1,250 @@
+"""Random scenes of the validation base, space-filling in dimensionless numbers.
+
+    python validation/draw.py FOLDER [--only STRATUM]
+
+writes `FOLDER/<stratum>-<number>.toml`. The same number is always the same scene: the points are a
+scrambled Sobol sequence of each stratum, and more scenes leave the first ones as they are.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from scipy.stats import qmc
+
+STRATA = {"dry": 256, "film": 40, "friction": 40, "relaxing": 40, "yielding": 40, "off-centre": 32}
+"""Scenes of each stratum."""
+SEED = 20261127
+ELEMENTS = 8.0
+"""Across the contact radius at `paper` resolution; bodies that are not axisymmetric take a quarter."""
+
+STEEPEST = 0.15
+"""Patch over radius of the outer body, which Hertz's contact supposes to be small."""
+
+Table = dict[str, Any]
+
+
+class Point:
+    """A point of the unit cube whose coordinates are taken one after the other."""
+
+    def __init__(self, coordinates: list[float]) -> None:
+        self._left = iter(coordinates)
+
+    def uniform(self, low: float, high: float) -> float:
+        """Between the bounds."""
+        return low + next(self._left) * (high - low)
+
+    def log(self, low: float, high: float) -> float:
+        """Between the bounds, even in the logarithm."""
+        return math.exp(self.uniform(math.log(low), math.log(high)))
+
+    def some(self, share: float, draw: Callable[[float], float]) -> float:
+        """In a share of all scenes what ``draw`` makes of a number between 0 and 1, else 0."""
+        at = next(self._left)
+        return draw(at / share) if at < share else 0.0
+
+    def one_of(self, *choices: str) -> str:
+        """One of equally likely choices."""
+        return choices[int(self.uniform(0.0, len(choices)))]
+
+
+DIMENSION = 24
+"""Most coordinates that a scene takes."""
+
+
+def _between(low: float, high: float) -> Callable[[float], float]:
+    return lambda at: low * (high / low) ** at
+
+
+def _body(point: Point, radius: float, density: float, material: str) -> Table:
+    """A sphere of this radius, or a compact body of its mass with another tip."""
+    blunt = point.some(0.25, _between(0.3, 3.0))
+    if not blunt:
+        return {"kind": "sphere", "radius": radius, "material": material}
+    mass = 4.0 / 3.0 * math.pi * radius**3 * density
+    return {"kind": "compact", "mass": mass, "tip_radius": blunt * radius, "material": material}
+
+
+def _tip(body: Table) -> float:
+    return float(body.get("tip_radius", body.get("radius")))
+
+
+def _first_period(plate: Table, material: Table) -> float:
+    """Of a thin plate, s; a free one's lowest axisymmetric mode."""
+    eigenvalue = {"clamped": 10.22, "simply-supported": 4.94, "free": 9.0}[plate["edge"]]
+    modulus = material["youngs_modulus"] / (12.0 * (1.0 - material["poisson_ratio"] ** 2))
+    speed = math.sqrt(modulus / material["density"]) * plate["thickness"]
+    return 2.0 * math.pi * plate["radius"] ** 2 / (eigenvalue * speed)
+
+
+def dry(point: Point) -> Table:
+    """A dry central impact."""
+    thickness = 1e-3
+    plate = {
+        "radius": thickness / point.log(0.02, 0.4),
+        "thickness": thickness,
+        "edge": point.one_of("clamped", "clamped", "simply-supported", "free"),
+        "material": "plate",
+    }
+    materials = {
+        "plate": {
+            "youngs_modulus": point.log(5e9, 120e9),
+            "poisson_ratio": point.uniform(0.0, 0.45),
+            "density": point.log(1500.0, 8000.0),
+        },
+        "bodies": {"poisson_ratio": point.uniform(0.1, 0.4)},
+    }
+    of_plate, of_bodies = materials["plate"], materials["bodies"]
+    for name, low, high in (("youngs_modulus", 0.3, 100.0), ("density", 0.3, 8.0)):
+        ratio = math.sqrt(point.log(low, high))
+        of_bodies[name] = of_plate[name] * ratio
+        of_plate[name] /= ratio
+    # Hertz's impact on a half-space: a = sqrt(r d), d^(5/2) = 15 m v^2 / (16 E* sqrt(r)),
+    # T = 2.9433 d / v; r follows from a and T, v from r
+    modulus = 1.0 / sum((1.0 - m["poisson_ratio"] ** 2) / m["youngs_modulus"] for m in materials.values())
+    patch = thickness * point.log(0.02, 0.6)
+    time = point.log(0.03, 3.0) * _first_period(plate, of_plate)
+    per_patch = time**2 * 16.0 * modulus / (2.9433**2 * 20.0 * math.pi * of_bodies["density"])
+    # a patch that is small against the radius, as Hertz's contact supposes
+    steepest = point.log(0.02, STEEPEST)
+    if patch > steepest * (per_patch * patch) ** (1 / 3):
+        patch = math.sqrt(steepest**3 * per_patch)
+    cube = per_patch * patch
+    outer = _body(point, cube ** (1 / 3), of_bodies["density"], "bodies")
+    approach = patch**2 / _tip(outer)
+    outer["speed"] = 2.9433 * approach / time * (_tip(outer) / cube ** (1 / 3)) ** 0.25
+    inner = _body(point, cube ** (1 / 3) * point.log(0.1, 10.0) ** (1 / 3), of_bodies["density"], "bodies")
+    if gap := point.some(0.3, _between(0.03, 3.0)):
+        inner["gap"] = gap * approach
+    if speed := point.some(0.3, lambda at: -0.5 + 1.5 * at):
+        inner["speed"] = speed * outer["speed"]
+    if damping := point.some(0.25, _between(1e-3, 0.1)):
+        plate["damping_ratio"] = damping
+    scene = {"materials": materials, "plate": plate, "outer": outer, "inner": inner}
+    return scene | {"reference": {"elements_per_contact_radius": ELEMENTS}}
+
+
+def _duration(scene: Table) -> float:
+    """Of the outer contact on a half-space, s."""
+    outer, moduli = scene["outer"], scene["materials"].values()
+    modulus = 1.0 / sum((1.0 - m["poisson_ratio"] ** 2) / m["youngs_modulus"] for m in moduli)
+    density = scene["materials"]["bodies"]["density"]
+    mass = outer.get("mass", 4.0 / 3.0 * math.pi * _tip(outer) ** 3 * density)
+    energy = mass * outer["speed"] ** 2
+    return 2.9433 * (15.0 * energy / (16.0 * modulus * math.sqrt(_tip(outer)))) ** 0.4 / outer["speed"]
+
+
+def film(point: Point) -> Table:
+    """With a squeeze film below the plate."""
+    scene = dry(point)
+    scene["plate"].pop("damping_ratio", None)
+    scene["inner"].pop("speed", None)
+    density = point.log(500.0, 2000.0)
+    scene["fluid"] = {
+        "viscosity": point.log(1e-4, 0.1),
+        "density": density,
+        "minimum_gap": point.log(1e-7, 2e-6),
+    }
+    if ratio := point.some(0.3, lambda at: 0.3 + 0.7 * at):
+        scene["fluid"]["added_mass_frequency_ratio"] = ratio
+    # the film slows the inner body for ever: both sides are compared at one time
+    scene["run"] = {"end_time": 4.0 * _duration(scene)}
+    return scene
+
+
+def friction(point: Point) -> Table:
+    """With friction in both contacts, which the models leave out."""
+    return dry(point) | {"friction": point.log(0.03, 0.5)}
+
+
+def relaxing(point: Point) -> Table:
+    """The plate or the bodies are viscoelastic."""
+    scene = dry(point)
+    scene["plate"].pop("damping_ratio", None)
+    scene["materials"][point.one_of("plate", "plate", "bodies")] |= {
+        "loss_factor": point.log(0.003, 0.1),
+        "modulus_frequency": 0.5 / _duration(scene),
+    }
+    return scene
+
+
+def yielding(point: Point) -> Table:
+    """The plate or the bodies yield: 1 to 100 times the speed of first yield."""
+    scene = dry(point)
+    moduli = scene["materials"].values()
+    modulus = 1.0 / sum((1.0 - m["poisson_ratio"] ** 2) / m["youngs_modulus"] for m in moduli)
+    # first yield at a pressure of 1.6 Y; an impact's pressure grows with v^(2/5)
+    approach = _duration(scene) * scene["outer"]["speed"] / 2.9433
+    pressure = 2.0 / math.pi * modulus * math.sqrt(approach / _tip(scene["outer"]))
+    yields = scene["materials"][point.one_of("plate", "plate", "bodies")]
+    yields["yield_strength"] = pressure / (1.6 * point.log(1.0, 100.0) ** 0.4)
+    yields["hardening"] = yields["youngs_modulus"] * point.log(1e-4, 0.05)
+    return scene
+
+
+def off_centre(point: Point) -> Table:
+    """The outer body strikes beside the centre."""
+    scene = dry(point)
+    plate = scene["plate"]
+    plate["radius"] = min(plate["radius"], 20.0 * plate["thickness"])
+    scene["outer"]["offset"] = plate["radius"] * point.uniform(0.02, 0.6)
+    scene["reference"]["elements_per_contact_radius"] = ELEMENTS / 4.0
+    return scene
+
+
+DRAWN: dict[str, Callable[[Point], Table]] = {
+    "dry": dry,
+    "film": film,
+    "friction": friction,
+    "relaxing": relaxing,
+    "yielding": yielding,
+    "off-centre": off_centre,
+}
+
+
+def scenes(stratum: str, count: int) -> list[Table]:
+    """The first scenes of a stratum, SI."""
+    seed = SEED + list(DRAWN).index(stratum)
+    size = 2 ** math.ceil(math.log2(count))
+    points = qmc.Sobol(DIMENSION, scramble=True, seed=seed).random(size)[:count]
+    return [
+        {"name": f"{stratum}-{k:03}", "kind": "plate-impact"}
+        | DRAWN[stratum](Point([float(at) for at in point]))
+        for k, point in enumerate(points)
+    ]
+
+
+def _toml(table: Table, path: str = "") -> str:
+    """A scene that one can read: numbers of six digits."""
+
+    def value(of: Any) -> str:
+        return f"{of:.6g}" if isinstance(of, float) else f'"{of}"'
+
+    parts = {key: part for key, part in table.items() if isinstance(part, dict)}
+    lines = [f"{key} = {value(part)}" for key, part in table.items() if key not in parts]
+    text = "".join(f"{line}\n" for line in lines)
+    if path and lines:
+        text = f"\n[{path}]\n{text}"
+    return text + "".join(_toml(part, f"{path}.{key}".lstrip(".")) for key, part in parts.items())
+
+
+def main() -> None:
+    """Write the scenes."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--only", choices=STRATA, help="one stratum")
+    given = parser.parse_args()
+    given.folder.mkdir(parents=True, exist_ok=True)
+    for stratum, count in STRATA.items():
+        if given.only in (None, stratum):
+            for scene in scenes(stratum, count):
+                path = given.folder / f"{scene['name']}.toml"
+                path.write_text(_toml(scene), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
