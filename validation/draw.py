@@ -20,7 +20,7 @@ STRATA = {"dry": 256, "film": 40, "friction": 40, "relaxing": 40, "yielding": 40
 """Scenes of each stratum."""
 SEED = 20261127
 ELEMENTS = 8.0
-"""Across the contact radius at `paper` resolution; bodies that are not axisymmetric take a quarter."""
+"""Across the contact radius at `paper` resolution; off-centre impacts take a quarter."""
 
 STEEPEST = 0.15
 """Patch over radius of the outer body, which Hertz's contact supposes to be small."""
@@ -105,7 +105,9 @@ def dry(point: Point) -> Table:
         of_plate[name] /= ratio
     # Hertz's impact on a half-space: a = sqrt(r d), d^(5/2) = 15 m v^2 / (16 E* sqrt(r)),
     # T = 2.9433 d / v; r follows from a and T, v from r
-    modulus = 1.0 / sum((1.0 - m["poisson_ratio"] ** 2) / m["youngs_modulus"] for m in materials.values())
+    modulus = 1.0 / sum(
+        (1.0 - m["poisson_ratio"] ** 2) / m["youngs_modulus"] for m in materials.values()
+    )
     patch = thickness * point.log(0.02, 0.6)
     time = point.log(0.03, 3.0) * _first_period(plate, of_plate)
     per_patch = time**2 * 16.0 * modulus / (2.9433**2 * 20.0 * math.pi * of_bodies["density"])
@@ -117,7 +119,9 @@ def dry(point: Point) -> Table:
     outer = _body(point, cube ** (1 / 3), of_bodies["density"], "bodies")
     approach = patch**2 / _tip(outer)
     outer["speed"] = 2.9433 * approach / time * (_tip(outer) / cube ** (1 / 3)) ** 0.25
-    inner = _body(point, cube ** (1 / 3) * point.log(0.1, 10.0) ** (1 / 3), of_bodies["density"], "bodies")
+    inner = _body(
+        point, cube ** (1 / 3) * point.log(0.1, 10.0) ** (1 / 3), of_bodies["density"], "bodies"
+    )
     if gap := point.some(0.3, _between(0.03, 3.0)):
         inner["gap"] = gap * approach
     if speed := point.some(0.3, lambda at: -0.5 + 1.5 * at):
@@ -135,7 +139,9 @@ def _duration(scene: Table) -> float:
     density = scene["materials"]["bodies"]["density"]
     mass = outer.get("mass", 4.0 / 3.0 * math.pi * _tip(outer) ** 3 * density)
     energy = mass * outer["speed"] ** 2
-    return 2.9433 * (15.0 * energy / (16.0 * modulus * math.sqrt(_tip(outer)))) ** 0.4 / outer["speed"]
+    return (
+        2.9433 * (15.0 * energy / (16.0 * modulus * math.sqrt(_tip(outer)))) ** 0.4 / outer["speed"]
+    )
 
 
 def film(point: Point) -> Table:

@@ -21,6 +21,7 @@ from ..solid.mesh import (
     qualities,
     surface,
     tetrahedra,
+    volumes,
 )
 from .body import Body, body_of, fixed_mask
 from .cad import DELAUNAY, FRONTAL, HXT, StruckPart, largest_element, struck_part
@@ -95,6 +96,8 @@ class FineBody:
     strikes: dict[str, Strike]
     places: Floats
     """(n, 3) of the nodes, those of the surface around the contacts on the exact body, m."""
+    kept: float = 0.0
+    """Share of the volume whose elements are those of the file."""
 
 
 def fine_body(scene: BodyScene, order: int, fineness: Fineness) -> FineBody:
@@ -164,19 +167,25 @@ def _of_mesh(scene: BodyScene, path: Path, order: int, fineness: Fineness) -> Fi
         stated = described(body, point, distance, None)
         curvature = 0.5 * sum(stated["curvatures"])
         strikes[name] = Strike(np.array(stated["point"]), np.array(stated["normal"]), curvature)
-    mesh = _refined(body, strikes, fineness, order)
+    mesh, kept = _refined(body, strikes, fineness, order)
     exact = volume(body.points, body.cells)
     made = Body(mesh.points, tetrahedra("body", *_corners(mesh), 2).cells, body.groups)
     nodes = np.flatnonzero(moved_nodes(body, fixed, made)[: mesh.points.shape[0]])
     places = _on_skin(body, mesh, strikes, fineness)
-    return FineBody(mesh, nodes, exact, strikes, places)
+    return FineBody(mesh, nodes, exact, strikes, places, kept)
 
 
 _NONE = np.zeros(0, dtype=np.int64)
 
 
-def _refined(body: Body, strikes: dict[str, Strike], fineness: Fineness, order: int) -> TetMesh:
-    """The mesh that was given, with straight edges, cut where its elements are too large."""
+def _refined(
+    body: Body, strikes: dict[str, Strike], fineness: Fineness, order: int
+) -> tuple[TetMesh, float]:
+    """The mesh that was given, with straight edges, cut where its elements are too large.
+
+    Returns:
+        The mesh, and the share of the volume whose elements were not cut.
+    """
     found = walls(body.skin)
     far = _far(found, fineness, 1.0, None)
 
@@ -196,7 +205,10 @@ def _refined(body: Body, strikes: dict[str, Strike], fineness: Fineness, order: 
     points, corners = bisected(body.points[used], number.reshape(-1, 4), longest, on_skin)
     mesh = tetrahedra("body", points, corners, order)
     check_elements(mesh)
-    return mesh
+    # each cut leaves elements with a new node alone
+    uncut = np.all(mesh.corners < used.size, axis=1)
+    each = volumes(mesh.points, mesh.corners)
+    return mesh, float(each[uncut].sum() / each.sum())
 
 
 def _corners(mesh: TetMesh) -> tuple[Floats, Ints]:

@@ -72,6 +72,8 @@ class ImpactModel:
     sides: tuple[Side, ...]
     has_struck: bool
     """Whether the first elastic body is what is struck; else it strikes a rigid wall."""
+    kept: float = 0.0
+    """Share of the volume of what is struck whose elements are those of a mesh that was given."""
 
     @property
     def share(self) -> float:
@@ -121,7 +123,7 @@ def impact_model(scene: Scene, sizes: Sizes, file: Path | None) -> ImpactModel:
         )
         sides.append(Side(*common, number, ball, sizes.least(name), patch, places, facets, own))
     model = Model(tuple(elastic), tuple(rigid), tuple(contacts))
-    return ImpactModel(model, target.planes, tuple(sides), has_struck=True)
+    return ImpactModel(model, target.planes, tuple(sides), has_struck=True, kept=target.kept)
 
 
 def _tuple(vector: Floats) -> tuple[float, float, float]:

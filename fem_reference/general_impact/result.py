@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
@@ -13,13 +14,17 @@ from ..impact.result import Details, ImpactSolver
 from ..impact.series import MeshResult, Solved, Target
 from . import solve as explicit
 from .estimate import Sizes
+from .model import ImpactModel
 from .run import Run
 from .scene import Scene
+from .struck import first_echo
 
 RATIO = 0.88
 """Elements of a mesh over those of the next finer one, in every direction."""
 MINOR = 0.05
 """Of the impact: what passes on less needs not be known to more digits than the impact itself."""
+KEPT = 0.1
+"""Share of a body's volume on one and the same elements from which on a band says too little."""
 CURVES = (
     Level("outer_displacement", 0),
     Level("inner_displacement", 3),
@@ -55,6 +60,10 @@ class Solution(Solved, Protocol):
     @property
     def run(self) -> Run:
         """The run."""
+
+    @property
+    def made(self) -> ImpactModel:
+        """The model."""
 
     @property
     def sizes(self) -> Sizes:
@@ -148,4 +157,24 @@ def _details(
         }
         | ({"source": "external", "model": program} if program else {}),
         uncertainty=curve_uncertainty(curves(scene), bands),
+        warnings=tuple(beyond_bands(scene, solution)),
     )
+
+
+def beyond_bands(scene: Scene, solution: Solution) -> Iterator[str]:
+    """A sentence for each error that the 95 % bands do not hold."""
+    run, kept = solution.run, solution.made.kept
+    if kept > KEPT:
+        yield (
+            f"{100.0 * kept:.0f} % of the body's volume keeps the elements of its file on every "
+            "mesh: the 95 % bands do not include their error; give a CAD part or a coarser mesh"
+        )
+    if scene.struck_material is not None and scene.wall is not None:
+        echo = first_echo(solution.sizes.duration)
+        ends = [float(run.times[-1])] if run.in_contact_at_end else []
+        last = max([*ends, *(contact.end or 0.0 for contact in run.contacts)])
+        if last > echo:
+            yield (
+                f"the last contact ends at {1e6 * last:.4g} us, but the modelled part of the wall "
+                f"sends an echo back after {1e6 * echo:.4g} us: what comes after that is wrong"
+            )

@@ -35,6 +35,8 @@ class Struck:
     """(n, 3) of its nodes, those around the contacts on the exact body, m."""
     planes: tuple[int, ...]
     """Axes that the model's planes of symmetry are normal to."""
+    kept: float = 0.0
+    """Share of the volume whose elements are those of a mesh that was given."""
 
     @property
     def share(self) -> float:
@@ -83,7 +85,7 @@ def _body(scene: Scene, material: Material, sizes: Sizes, file: Path) -> Struck:
     # the mass is the exact body's
     density = material.density * made.volume / made.mesh.volume()
     body = ElasticBody(made.mesh, replace(material, density=density), _all(made.fixed))
-    return Struck(body, made.strikes, made.places, WHOLE)
+    return Struck(body, made.strikes, made.places, WHOLE, made.kept)
 
 
 def _plate(scene: Scene, plate: Plate, sizes: Sizes) -> Struck:
@@ -122,6 +124,11 @@ def _wall(scene: Scene, material: Material, sizes: Sizes) -> Struck:
 def wall_radius(material: Material, duration: float) -> float:
     """Of the half ball that stands for a wall, m."""
     return ECHO * pressure_wave_speed(material) * duration
+
+
+def first_echo(duration: float) -> float:
+    """When the first echo comes back from the end of the half ball, s."""
+    return 2.0 * ECHO * duration
 
 
 def pressure_wave_speed(material: Material) -> float:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import gmsh
@@ -20,7 +21,7 @@ from fem_reference.explicit.free_motions import FreeMotions, flexibility
 from fem_reference.general_impact.ending import Bodies
 from fem_reference.general_impact.estimate import Sizes, estimate
 from fem_reference.general_impact.model import ImpactModel, impact_model
-from fem_reference.general_impact.result import quantities
+from fem_reference.general_impact.result import beyond_bands, quantities
 from fem_reference.general_impact.scene import Scene, parse_scene
 from fem_reference.general_impact.struck import pressure_wave_speed, wall_radius
 from fem_reference.solid.elasticity import lumped_mass
@@ -78,6 +79,34 @@ def test_no_echo_of_a_wall_comes_back_during_the_contact() -> None:
     way = pressure_wave_speed(material) * duration
     assert pressure_wave_speed(material) == pytest.approx(6028.0, rel=1e-3)
     assert 2.0 * wall_radius(material, expected.duration) > 1.25 * way
+
+
+@pytest.mark.parametrize(("last", "told"), [(1.2, 0), (1.4, 1)])
+def test_a_contact_that_outlasts_the_echo_of_the_wall_is_told(last: float, told: int) -> None:
+    scene = parse_scene(document(wall={"material": STEEL}))
+    duration = estimate(scene).duration
+    contact = SimpleNamespace(end=last * duration)
+    run = SimpleNamespace(in_contact_at_end=False, contacts=[contact])
+    sizes, made = SimpleNamespace(duration=duration), SimpleNamespace(kept=0.0)
+    solution: Any = SimpleNamespace(run=run, sizes=sizes, made=made)
+    assert sum("echo" in warning for warning in beyond_bands(scene, solution)) == told
+
+
+@pytest.mark.parametrize(("size", "told"), [(3.0, 0), (0.6, 1)])
+def test_elements_of_a_file_that_no_mesh_of_the_series_cuts_are_told(
+    tmp_path: Path, size: float, told: int
+) -> None:
+    path = write_mesh(tmp_path / "block.msh", lambda: gmsh.model.occ.addBox(0, 0, 0, 9, 9, 4), size)
+    body = struck(path, [0.0045, 0.0045, 0.004], unit=1e-3)
+    scene = parse_scene(document(body=body, reference__elements_per_contact_radius=1.0))
+    expected = estimate(scene)
+    sizes = Sizes(scene, expected.radii, expected.duration, 0.6)
+    made = impact_model(scene, sizes, path)
+    solution: Any = SimpleNamespace(run=None, made=made)
+    found = list(beyond_bands(scene, solution))
+    assert [f"{100.0 * made.kept:.0f} % of the body's volume" in each for each in found] == [
+        True
+    ] * told
 
 
 def tilted_block(path: Path) -> tuple[Path, Floats, Floats, Floats]:

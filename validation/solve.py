@@ -1,0 +1,136 @@
+"""Solve scenes of the validation base: reference, its band, and the reduced models.
+
+    python validation/solve.py SCENES ROWS [--shard 1/4] [--program PATH]
+
+writes `ROWS/<scene>.json` for every scene file in the folder SCENES that has none yet; so a run
+that was stopped goes on, and shards on several machines share the work. A scene that is refused or
+not solved gets a row with the reason.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+from pathlib import Path
+from typing import Any
+
+PROGRAM = Path(__file__).resolve().parent.parent / "target" / "release" / "impactcheck"
+MODELS = ("A", "B", "C")
+QUANTITIES = (
+    "efficiency",
+    "outer_velocity_final",
+    "inner_velocity_final",
+    "outer_force_peak",
+    "inner_force_peak",
+    "outer_contact_end",
+    "inner_contact_end",
+    "first_frequency",
+)
+DIGITS = 7
+
+Row = dict[str, Any]
+
+
+def _short(value: float | None) -> float | None:
+    return None if value is None else float(f"{value:.{DIGITS}g}")
+
+
+def _values(summary: Row) -> Row:
+    return {name: _short(summary.get(name)) for name in QUANTITIES}
+
+
+def _model(found: Row) -> Row:
+    summary = found["summary"]
+    limits = {limit["measure"]: _short(limit["value"]) for limit in summary["limits"]}
+    unsound = [check["check"] for check in found["integrity"] if check["verdict"] == "fail"]
+    return {
+        "modes": summary["modes"],
+        "values": _values(summary),
+        "contacts": [summary["outer_contacts"], summary["inner_contacts"]],
+        "truncation_error": _short(summary["truncation_error"]),
+        "mesh_error": _short(summary.get("mesh_error")),
+        "limits": limits,
+        "warnings": len(summary["warnings"]),
+        "unsound": unsound,
+    }
+
+
+def row(document: Row) -> Row:
+    """What is kept of the comparison of one scene."""
+    scene = document["scenes"][0]
+    reference = scene["reference"]
+    bands = reference.get("uncertainty") or {}
+    return {
+        "hash": reference["scene_hash"],
+        "dofs": reference["mesh"]["dofs"],
+        "warnings": reference["warnings"],
+        "unsound": [check["check"] for check in scene["integrity"] if check["verdict"] == "fail"],
+        "contacts": [reference["outer_contacts"], reference["inner_contacts"]],
+        "reference": _values(reference),
+        "bands": {name: _short(bands.get(name)) for name in QUANTITIES},
+        "models": {model["model"]: _model(model) for model in scene["models"]},
+    }
+
+
+def solve(path: Path, program: Path) -> Row:
+    """Compare the models with a fresh reference of the scene; or why that is not possible."""
+    begun = time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        command = [program, "--store", f"{folder}/store", "compare", path, "--compute", "--json"]
+        command += [
+            "--resolution",
+            "coarse",
+            "--models",
+            ",".join(MODELS),
+            "--out",
+            f"{folder}/page",
+        ]
+        ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    found: Row = {"scene": path.stem, "stratum": path.stem.rsplit("-", 1)[0]}
+    if ran.stdout.strip():
+        found |= row(json.loads(ran.stdout))
+    else:
+        lines = [line for line in ran.stderr.splitlines() if line.startswith("error")]
+        reason = lines[0].removeprefix("error: ") if lines else ran.stderr[-300:]
+        found |= {"refused": reason, "status": ran.returncode}
+    return found | {"seconds": round(time.monotonic() - begun, 1)}
+
+
+def _shard(text: str) -> tuple[int, int]:
+    number, count = (int(part) for part in text.split("/"))
+    if not 1 <= number <= count:
+        raise argparse.ArgumentTypeError(f"shard {text}: the number must be 1 to {count}")
+    return number, count
+
+
+def main() -> None:
+    """Solve what is missing."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenes", type=Path)
+    parser.add_argument("rows", type=Path)
+    parser.add_argument("--shard", type=_shard, default=(1, 1), help="such as 2/4: the second of 4")
+    parser.add_argument("--program", type=Path, default=PROGRAM)
+    given = parser.parse_args()
+    number, count = given.shard
+    given.rows.mkdir(parents=True, exist_ok=True)
+    # from every stratum early
+    paths = sorted(given.scenes.glob("*.toml"), key=lambda path: (path.stem[-3:], path.stem))
+    for path in paths[number - 1 :: count]:
+        target = given.rows / f"{path.stem}.json"
+        if not target.exists():
+            found = solve(path, given.program)
+            partial = target.with_suffix(".partial")
+            partial.write_text(json.dumps(found | {"file": tomllib.loads(path.read_text())}))
+            shutil.move(partial, target)
+            outcome = found.get("refused", f"{found.get('dofs')} unknowns")
+            print(f"{path.stem}: {found['seconds']} s, {outcome}", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    main()
