@@ -3,6 +3,8 @@
 # make report    the report of the shipped scenes, into reports/
 # make wheel    the Python package, into target/wheels, and a clean environment with it: target/wheel-python
 # make solutions computes the stored references of the shipped scenes again
+# make validation  solves random scenes for the table that predictions rest on: hours; goes on where it was stopped
+#                (SHARD=2/4: the second of four machines)
 # make evidence  slow evidence: references of all scenes and the truth of their bands, model C on the validation scenes,
 #                studies, run time against error, random impacts, killed runs, FEniCSx's releases (an hour or more; the last
 #                needs root)
@@ -19,6 +21,7 @@ OUT    := target/check
 # the one check that needs what only root installs; without it the last line says so, and CI fails
 BROWSER  = $(or $(CHROMIUM),$(shell command -v chromium || command -v chromium-browser || command -v google-chrome))
 UNCHECKED = $(if $(BROWSER)$(CI),,browser::)
+SCRIPTS := fem_reference examples python validation benches tests/freeze guide/check guide/generate
 SCENES := $(basename $(notdir $(wildcard scenes/*.toml)))
 # meshes of a solid at `fine` take an hour
 PLATES := $(filter-out seal-seat-%,$(SCENES))
@@ -27,7 +30,7 @@ PLATES := $(filter-out seal-seat-%,$(SCENES))
 ASIDE := scenes/validation/off-centre.toml
 SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-light polymer-plate supported-plate titanium-sapphire)
 
-.PHONY: test setup rust wheel python live gate report solutions evidence
+.PHONY: test setup rust wheel python live gate report solutions validation evidence
 
 test: setup rust python live gate
 	@echo "all checks passed$(if $(UNCHECKED), but one: pages in a browser need Chromium (as root: apt-get install chromium))"
@@ -51,11 +54,11 @@ wheel: setup
 	$(WHEEL)/bin/python -m pip install --quiet --force-reinstall --no-deps target/wheels/*.whl
 
 python: setup wheel
-	$(VENV)/bin/ruff check fem_reference examples python tests/freeze guide/check guide/generate
-	$(VENV)/bin/ruff format --check fem_reference examples python tests/freeze guide/check guide/generate
+	$(VENV)/bin/ruff check $(SCRIPTS)
+	$(VENV)/bin/ruff format --check $(SCRIPTS)
 	guide/check
 	$(TOOL) -m mypy
-	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference
+	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference validation
 	cargo build --release
 	guide/generate target/release/impactcheck --check
 	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck IMPACTCHECK_PYTHON=$(or $(IMPACTCHECK_PYTHON),$(CURDIR)/$(TOOL)) \
@@ -88,6 +91,12 @@ solutions: setup
 	$(RUN) reference scaled-plate-r10 --stress-at 46.9e-6
 	$(RUN) reference scaled-plate-r6.35 --stress-at 25.3e-6
 	for seat in seal-seat-improved seal-seat-initial; do $(RUN) reference $$seat --stress-at 20e-6 || exit 1; done
+
+validation: setup
+	cargo build --release
+	$(TOOL) validation/draw.py $(OUT)/validation/scenes
+	IMPACTCHECK_PYTHON=$(PYTHON) $(TOOL) validation/solve.py $(OUT)/validation/scenes $(OUT)/validation/rows $(if $(SHARD),--shard $(SHARD))
+	$(TOOL) validation/table.py $(OUT)/validation/rows validation/base.jsonl
 
 evidence: setup wheel
 	for scene in $(PLATES); do for resolution in coarse paper fine; do \

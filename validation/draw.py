@@ -70,15 +70,16 @@ def _body(point: Point, radius: float, density: float, material: str) -> Table:
 
 
 def _tip(body: Table) -> float:
-    return float(body.get("tip_radius", body.get("radius")))
+    return float(body["radius" if body["kind"] == "sphere" else "tip_radius"])
 
 
 def _first_period(plate: Table, material: Table) -> float:
     """Of a thin plate, s; a free one's lowest axisymmetric mode."""
+    radius, thickness = float(plate["radius"]), float(plate["thickness"])
     eigenvalue = {"clamped": 10.22, "simply-supported": 4.94, "free": 9.0}[plate["edge"]]
     modulus = material["youngs_modulus"] / (12.0 * (1.0 - material["poisson_ratio"] ** 2))
-    speed = math.sqrt(modulus / material["density"]) * plate["thickness"]
-    return 2.0 * math.pi * plate["radius"] ** 2 / (eigenvalue * speed)
+    speed = math.sqrt(modulus / material["density"]) * thickness
+    return 2.0 * math.pi * radius**2 / (eigenvalue * speed)
 
 
 def dry(point: Point) -> Table:
@@ -138,10 +139,9 @@ def _duration(scene: Table) -> float:
     modulus = 1.0 / sum((1.0 - m["poisson_ratio"] ** 2) / m["youngs_modulus"] for m in moduli)
     density = scene["materials"]["bodies"]["density"]
     mass = outer.get("mass", 4.0 / 3.0 * math.pi * _tip(outer) ** 3 * density)
-    energy = mass * outer["speed"] ** 2
-    return (
-        2.9433 * (15.0 * energy / (16.0 * modulus * math.sqrt(_tip(outer)))) ** 0.4 / outer["speed"]
-    )
+    speed = float(outer["speed"])
+    power = 15.0 * mass * speed**2 / (16.0 * modulus * math.sqrt(_tip(outer)))
+    return 2.9433 * float(power**0.4) / speed
 
 
 def film(point: Point) -> Table:
@@ -163,8 +163,15 @@ def film(point: Point) -> Table:
 
 
 def friction(point: Point) -> Table:
-    """With friction in both contacts, which the models leave out."""
-    return dry(point) | {"friction": point.log(0.03, 0.5)}
+    """With friction in both contacts, of spheres, which the models leave out."""
+    scene = dry(point)
+    density = scene["materials"]["bodies"]["density"]
+    for body in (scene["outer"], scene["inner"]):
+        if body["kind"] == "compact":
+            volume = body.pop("mass") / density
+            del body["tip_radius"]
+            body |= {"kind": "sphere", "radius": (3.0 * volume / (4.0 * math.pi)) ** (1 / 3)}
+    return scene | {"friction": point.log(0.03, 0.5)}
 
 
 def relaxing(point: Point) -> Table:

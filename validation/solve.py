@@ -66,6 +66,7 @@ def row(document: Row) -> Row:
     scene = document["scenes"][0]
     reference = scene["reference"]
     bands = reference.get("uncertainty") or {}
+    limits = (reference.get("convergence") or {}).get("quantities", {})
     return {
         "hash": reference["scene_hash"],
         "dofs": reference["mesh"]["dofs"],
@@ -73,6 +74,11 @@ def row(document: Row) -> Row:
         "unsound": [check["check"] for check in scene["integrity"] if check["verdict"] == "fail"],
         "contacts": [reference["outer_contacts"], reference["inner_contacts"]],
         "reference": _values(reference),
+        "extrapolated": {
+            name: _short(found["extrapolated"])
+            for name, found in limits.items()
+            if name in QUANTITIES
+        },
         "bands": {name: _short(bands.get(name)) for name in QUANTITIES},
         "models": {model["model"]: _model(model) for model in scene["models"]},
     }
@@ -82,7 +88,15 @@ def solve(path: Path, program: Path) -> Row:
     """Compare the models with a fresh reference of the scene; or why that is not possible."""
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
-        command = [program, "--store", f"{folder}/store", "compare", path, "--compute", "--json"]
+        command: list[str | Path] = [
+            program,
+            "--store",
+            f"{folder}/store",
+            "compare",
+            path,
+            "--compute",
+            "--json",
+        ]
         command += [
             "--resolution",
             "coarse",
@@ -96,9 +110,12 @@ def solve(path: Path, program: Path) -> Row:
     if ran.stdout.strip():
         found |= row(json.loads(ran.stdout))
     else:
-        lines = [line for line in ran.stderr.splitlines() if line.startswith("error")]
-        reason = lines[0].removeprefix("error: ") if lines else ran.stderr[-300:]
-        found |= {"refused": reason, "status": ran.returncode}
+        # the sentence of the error, which is broken into lines with bars before them
+        told = ran.stderr[ran.stderr.rfind("\u00d7") + 1 :].split("help:")[0]
+        found |= {
+            "refused": " ".join(told.replace("\u2502", " ").split()),
+            "status": ran.returncode,
+        }
     return found | {"seconds": round(time.monotonic() - begun, 1)}
 
 
