@@ -60,6 +60,7 @@ pub mod kinds;
 pub mod measured;
 pub mod optimise;
 pub mod plot;
+pub mod prediction;
 mod process_output;
 pub mod project;
 pub mod reference;

@@ -84,6 +84,12 @@ def row(document: Row) -> Row:
     }
 
 
+def _place(validated: Path) -> Row | None:
+    """Where the scene lies among others, as the program keeps it of a comparison that is sound."""
+    lines = validated.read_text(encoding="utf-8").splitlines() if validated.exists() else []
+    return next((json.loads(line)["place"] for line in lines), None)
+
+
 def solve(path: Path, program: Path) -> Row:
     """Compare the models with a fresh reference of the scene; or why that is not possible."""
     begun = time.monotonic()
@@ -106,9 +112,10 @@ def solve(path: Path, program: Path) -> Row:
             f"{folder}/page",
         ]
         ran = subprocess.run(command, capture_output=True, text=True, check=False)
+        place = _place(Path(folder) / "store" / "validated.jsonl")
     found: Row = {"scene": path.stem, "stratum": path.stem.rsplit("-", 1)[0]}
     if ran.stdout.strip():
-        found |= row(json.loads(ran.stdout))
+        found |= row(json.loads(ran.stdout)) | {"place": place}
     else:
         # the sentence of the error, which is broken into lines with bars before them
         told = ran.stderr[ran.stderr.rfind("\u00d7") + 1 :].split("help:")[0]

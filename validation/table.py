@@ -10,9 +10,44 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
+from typing import Any
 
 LARGEST = 1_000_000
 """Bytes of the table, which comes with the program."""
+
+
+def _proportions(scene: dict[str, Any]) -> dict[str, float]:
+    """Numbers that were drawn, by the names that the program has for them."""
+    plate, outer, inner = scene["plate"], scene["outer"], scene["inner"]
+    materials = scene["materials"]
+    of_plate = materials[plate["material"]]
+    ratios = {
+        f"modulus of the {name} body over the plate's": materials[body["material"]][
+            "youngs_modulus"
+        ]
+        / of_plate["youngs_modulus"]
+        for name, body in (("outer", outer), ("inner", inner))
+    }
+    return ratios | {
+        "thickness over radius of the plate": plate["thickness"] / plate["radius"],
+        "Poisson's ratio of the plate": of_plate["poisson_ratio"],
+        "damping ratio of the plate": plate.get("damping_ratio", 0.0),
+        "speed of the inner body over the outer one's": inner.get("speed", 0.0) / outer["speed"],
+    }
+
+
+def line(row: dict[str, Any]) -> dict[str, Any]:
+    """What the table keeps of a scene, which its number makes again."""
+    scene = row["file"]
+    names = ("scene", "stratum", "hash", "refused", "place", "dofs", "unsound", "contacts")
+    kept = {name: row[name] for name in (*names, "extrapolated", "bands", "seconds") if name in row}
+    if "refused" not in row:
+        kept["speed"] = scene["outer"]["speed"]
+        kept["proportions"] = {
+            name: float(f"{value:.7g}") for name, value in _proportions(scene).items()
+        }
+        kept["models"] = {name: model["values"] for name, model in row["models"].items()}
+    return kept
 
 
 def main() -> None:
@@ -22,10 +57,7 @@ def main() -> None:
     parser.add_argument("table", type=Path)
     given = parser.parse_args()
     rows = [json.loads(path.read_text()) for path in sorted(given.rows.glob("*.json"))]
-    for row in rows:
-        # the scene comes from its number
-        row.pop("file", None)
-    text = "".join(json.dumps(row, separators=(",", ":")) + "\n" for row in rows)
+    text = "".join(json.dumps(line(row), separators=(",", ":")) + "\n" for row in rows)
     if len(text) > LARGEST:
         parser.error(f"the table has {len(text)} bytes; it may have {LARGEST}")
     given.table.write_text(text, encoding="utf-8")

@@ -1,15 +1,18 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
-use super::requested_model::{self, ModelRequest};
+use super::requested_model::{self, ModelRequest, RequestedModel};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{ExitStatus, Result};
 use crate::file::write_file;
 use crate::format::{prefixed, with_unit};
-use crate::kinds::SharedBodies;
+use crate::kinds::{SharedBodies, of as kinds_of};
+use crate::prediction::{self, Interval, Prediction};
 use crate::report::{self, history_format};
 use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Sideways, Summary};
-use crate::scene::Scene;
+use crate::scene::{Model, Scene};
 use clap::Args;
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -49,7 +52,33 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         write_file(file, report::model_page(&scene, &outcome).as_bytes())?;
         context.note(format_args!("page in {}", file.display()));
     }
-    finish(context, arguments, (&scene, &outcome))
+    let prediction = predicted(context, &scene, &arguments.request, &outcome.summary);
+    finish(context, arguments, (&scene, &outcome), &prediction)
+}
+
+/// What a reference of `scene` would say, which model C is run for unless `summary` is its own.
+fn predicted(context: &Context, scene: &Scene, request: &ModelRequest, summary: &Summary) -> Prediction {
+    // before model C costs anything
+    kinds_of(scene).stratum(scene)?;
+    let continuum = Model::C.to_string();
+    if summary.model.as_ref() == Some(&continuum) && request.modes.is_none() && summary.choice.is_none() {
+        return prediction::predict(scene, summary);
+    }
+    let request = ModelRequest { model: Some(RequestedModel::Named(Model::C)), ..ModelRequest::default() };
+    let outcome = kinds::of(scene)
+        .reduced(context, scene, &request, &SharedBodies::default(), false)
+        .map_err(|error| format!("model C does not run: {error}"))?;
+    prediction::predict(scene, &outcome.summary)
+}
+
+/// A summary, and what a reference would say.
+#[derive(Serialize)]
+struct Document<'a> {
+    #[serde(flatten)]
+    summary: &'a Summary,
+    prediction: Option<&'a BTreeMap<&'static str, Interval>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    prediction_reason: Option<&'a String>,
 }
 
 /// Writes the history, if it is asked for, and prints warnings and summary.
@@ -57,6 +86,7 @@ fn finish(
     context: &Context,
     arguments: &Arguments,
     (scene, outcome): (&Scene, &Outcome),
+    prediction: &Prediction,
 ) -> Result<ExitStatus> {
     let Outcome { summary, history } = outcome;
     if let Some(path) = &arguments.history {
@@ -66,10 +96,38 @@ fn finish(
     for warning in &summary.warnings {
         context.note(format_args!("warning: {warning}"));
     }
-    arguments
-        .json
-        .print(summary, |summary| table(summary, |name| crate::kinds::of(scene).has(scene, name)))?;
+    let document = Document {
+        summary,
+        prediction: prediction.as_ref().ok(),
+        prediction_reason: prediction.as_ref().err(),
+    };
+    arguments.json.print(&document, |document| {
+        let results = table(document.summary, |name| kinds_of(scene).has(scene, name));
+        format!("{results}\n{}", predicted_lines(prediction, summary))
+    })?;
     Ok(ExitStatus::Pass)
+}
+
+/// The intervals as lines of name, bounds and unit; or why there are none.
+fn predicted_lines(prediction: &Prediction, summary: &Summary) -> String {
+    let intervals = match prediction {
+        Err(reason) => return format!("  no 95 % intervals for a reference: {reason}"),
+        Ok(intervals) => intervals,
+    };
+    let mut lines = Vec::new();
+    for Quantity { name, unit, .. } in summary.quantities.iter() {
+        let Some(Interval { low, high, level, scenes, stratum }) = intervals.get(name) else { continue };
+        if lines.is_empty() {
+            let level = 100.0 * level;
+            lines.push(format!(
+                "  a reference would say ({level:.0} %, from {scenes} similar scenes of the group `{stratum}`)"
+            ));
+        }
+        let to = prefixed(unit, low.abs().max(high.abs()));
+        let [low, high] = [*low, *high].map(|bound| with_unit(bound, to, 4));
+        lines.push(format!("  {name:<24} {low:>14} to {high}"));
+    }
+    lines.join("\n")
 }
 
 /// The summary as lines of name, value and unit; of the quantities those that the scene has.

@@ -106,6 +106,19 @@ pub trait Kind: physics::Kind {
         None
     }
 
+    /// Group of the validation base that `scene` belongs to.
+    ///
+    /// # Errors
+    /// A sentence of scenes that the base has none like.
+    fn stratum(&self, _: &Scene) -> std::result::Result<&'static str, String> {
+        Err(format!("the validation base has no scenes of kind `{}`", self.name()))
+    }
+
+    /// Numbers of `scene` by name that scenes of the base are drawn in, besides those of [`Kind::place`].
+    fn proportions(&self, _: &Scene) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
     /// Whether a material of `scene` deforms plastically.
     fn yields(&self, _: &Scene) -> bool {
         false

@@ -2,6 +2,7 @@
 
 mod features;
 mod place;
+mod stratum;
 
 pub use impactcheck_physics::kinds::plate_impact::*;
 
@@ -54,6 +55,14 @@ impl super::Kind for Kind {
 
     fn place(&self, scene: &Scene, summary: &Summary) -> Option<Place> {
         place::place(scene.plate_impact().ok()?, summary)
+    }
+
+    fn stratum(&self, scene: &Scene) -> std::result::Result<&'static str, String> {
+        stratum::stratum(scene.plate_impact().map_err(|error| error.to_string())?)
+    }
+
+    fn proportions(&self, scene: &Scene) -> Vec<(&'static str, f64)> {
+        scene.plate_impact().map(stratum::proportions).unwrap_or_default()
     }
 
     fn yields(&self, scene: &Scene) -> bool {

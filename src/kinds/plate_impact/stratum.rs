@@ -1,0 +1,51 @@
+//! The group of the validation base that a plate impact belongs to.
+
+use crate::kinds::plate_impact::PlateImpact;
+use crate::scene::Shape;
+
+/// The group of `setup`, as `validation/draw.py` names it.
+///
+/// # Errors
+/// A sentence of an impact that the base has none like.
+pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
+    if !matches!(setup.outer.shape, Shape::Sphere { .. } | Shape::Compact { .. }) {
+        return Err("the validation base has no scenes with a bender or a stack".into());
+    }
+    if setup.series.is_some() {
+        return Err("the validation base has no repeated impacts".into());
+    }
+    let features = [
+        (setup.fluid.is_some(), "film"),
+        (setup.friction > 0.0, "friction"),
+        (setup.relaxes(), "relaxing"),
+        (setup.yields(), "yielding"),
+        (!setup.outer.is_centred(), "off-centre"),
+    ];
+    let mut has = features.into_iter().filter(|(has, _)| *has).map(|(_, name)| name);
+    match (has.next(), has.next()) {
+        (None, _) => Ok("dry"),
+        (Some(name), None) => Ok(name),
+        (Some(first), Some(second)) => {
+            Err(format!("the validation base has no scenes that are both `{first}` and `{second}`"))
+        }
+    }
+}
+
+/// Numbers of `setup` that were drawn for the base, as `validation/table.py` names them.
+pub(super) fn proportions(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
+    let (plate, outer, inner) = (&setup.plate, &setup.outer, &setup.inner);
+    vec![
+        ("thickness over radius of the plate", plate.thickness / plate.radius),
+        ("Poisson's ratio of the plate", plate.material.poisson_ratio),
+        ("damping ratio of the plate", plate.damping_ratio),
+        (
+            "modulus of the outer body over the plate's",
+            outer.material.youngs_modulus / plate.material.youngs_modulus,
+        ),
+        (
+            "modulus of the inner body over the plate's",
+            inner.material.youngs_modulus / plate.material.youngs_modulus,
+        ),
+        ("speed of the inner body over the outer one's", inner.speed / outer.speed),
+    ]
+}

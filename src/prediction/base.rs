@@ -1,0 +1,46 @@
+//! The validation base: random scenes that references have solved (`make validation`), one a line.
+
+use crate::kinds::Place;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+const TABLE: &str = include_str!("../../validation/base.jsonl");
+/// Place in its table of what model C found.
+const CONTINUUM: &str = "C";
+
+/// A scene of the base that was solved.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Solved {
+    /// Name of the scene.
+    pub scene: String,
+    /// Hash of its physical content.
+    pub hash: String,
+    /// Group of similar scenes that it was drawn in.
+    pub stratum: String,
+    /// Speed of the outer body, m/s.
+    pub speed: f64,
+    /// Where it lies among others.
+    pub place: Option<Place>,
+    /// Numbers of the scene that were drawn, by name.
+    pub proportions: BTreeMap<String, f64>,
+    /// The reference's quantities in the limit of fine meshes, SI.
+    pub extrapolated: BTreeMap<String, f64>,
+    /// Those of the models, by model; `None`: not determined.
+    models: BTreeMap<String, BTreeMap<String, Option<f64>>>,
+}
+
+impl Solved {
+    /// Model C's value and the reference's, SI, if both have one.
+    pub fn values(&self, quantity: &str) -> Option<[f64; 2]> {
+        let model = *self.models.get(CONTINUUM)?.get(quantity)?;
+        Some([model?, *self.extrapolated.get(quantity)?])
+    }
+}
+
+/// Scenes that were refused or not solved are not among them.
+pub fn solved() -> &'static [Solved] {
+    static SOLVED: LazyLock<Vec<Solved>> =
+        LazyLock::new(|| TABLE.lines().filter_map(|line| serde_json::from_str(line).ok()).collect());
+    &SOLVED
+}

@@ -1,0 +1,138 @@
+//! Prediction intervals by conformal prediction, scaled by the errors of the nearest cases.
+//!
+//! Papadopoulos, Vovk and Gammerman, Regression conformal prediction with nearest neighbours, J. Artificial Intelligence Research
+//! 40 (2011) 815: an error is measured in units of what its neighbours' errors let expect; the quantile of these ratios over all cases,
+//! times what the neighbours of a new case let expect, holds the new error with the stated probability, whatever the errors' distribution.
+
+/// Neighbours that an error is compared with.
+const NEIGHBOURS: usize = 12;
+/// Least expected error, over the median of all errors: some neighbourhoods agree by chance.
+const LEAST: f64 = 0.1;
+
+/// An error seen at a place.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Coordinates. Shape (d).
+    pub place: Vec<f64>,
+    /// Magnitude of the error.
+    pub error: f64,
+}
+
+/// Cases from which errors elsewhere are predicted.
+#[derive(Debug)]
+pub struct Calibrated<'a> {
+    cases: &'a [Case],
+    /// Standard deviations of the coordinates. Shape (d).
+    spread: Vec<f64>,
+    least: f64,
+    /// Of the ratios.
+    quantile: f64,
+}
+
+impl<'a> Calibrated<'a> {
+    /// For intervals that hold the share `level` of all errors; `None` of fewer cases than that needs.
+    pub fn new(cases: &'a [Case], level: f64) -> Option<Self> {
+        let count = cases.len();
+        // the new case counts as one
+        let rank = (level * (count + 1) as f64).ceil() as usize;
+        if rank > count {
+            return None;
+        }
+        let errors = cases.iter().map(|case| case.error).collect();
+        let spread = (0..cases[0].place.len()).map(|axis| deviation(cases, axis)).collect();
+        let mut found =
+            Self { cases, spread, least: (LEAST * median(errors)).max(f64::MIN_POSITIVE), quantile: 0.0 };
+        let mut ratios: Vec<f64> =
+            (0..count).map(|own| cases[own].error / found.expected(&cases[own].place, Some(own))).collect();
+        ratios.sort_by(f64::total_cmp);
+        found.quantile = ratios[rank - 1];
+        Some(found)
+    }
+
+    /// Half width of the interval at `place`.
+    pub fn half_width(&self, place: &[f64]) -> f64 {
+        self.quantile * self.expected(place, None)
+    }
+
+    /// Median of the nearest cases' errors, without the case `own`.
+    fn expected(&self, place: &[f64], own: Option<usize>) -> f64 {
+        let others = self.cases.iter().enumerate().filter(|(k, _)| Some(*k) != own);
+        let mut near: Vec<(f64, f64)> =
+            others.map(|(_, case)| (self.distance(place, &case.place), case.error)).collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let errors = near.iter().take(NEIGHBOURS).map(|(_, error)| *error).collect();
+        median(errors).max(self.least)
+    }
+
+    /// Square of the distance, coordinates in standard deviations.
+    fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).zip(&self.spread).map(|((a, b), spread)| ((a - b) / spread).powi(2)).sum()
+    }
+}
+
+fn deviation(cases: &[Case], axis: usize) -> f64 {
+    let count = cases.len() as f64;
+    let mean = cases.iter().map(|case| case.place[axis]).sum::<f64>() / count;
+    let square = cases.iter().map(|case| (case.place[axis] - mean).powi(2)).sum::<f64>() / count;
+    // all the same: no difference there
+    if square > 0.0 { square.sqrt() } else { f64::INFINITY }
+}
+
+/// 0 of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => 0.0,
+        n if n % 2 == 1 => values[middle],
+        _ => 0.5 * (values[middle - 1] + values[middle]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Errors whose size grows a hundredfold along the first coordinate, with long tails.
+    fn cases(count: usize, seed: u64) -> Vec<Case> {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let mut draw = || {
+            let place = vec![random.f64(), random.f64()];
+            let size = 10.0_f64.powf(2.0 * place[0] - 4.0);
+            let error = size * (-random.f64().ln()).powf(1.3);
+            Case { place, error }
+        };
+        (0..count).map(|_| draw()).collect()
+    }
+
+    /// Over 40 calibrations of 100 cases, 200 new ones each.
+    #[test]
+    fn the_stated_share_of_new_errors_lies_within() {
+        let (mut within, mut all) = (0, 0);
+        for seed in 0..40 {
+            let known = cases(100, seed);
+            let calibrated = Calibrated::new(&known, 0.95).unwrap();
+            for case in cases(200, 1000 + seed) {
+                within += usize::from(case.error <= calibrated.half_width(&case.place));
+                all += 1;
+            }
+        }
+        let share = within as f64 / all as f64;
+        assert!((0.94..0.965).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn intervals_are_narrow_where_errors_are_small() {
+        let known = cases(200, 7);
+        let calibrated = Calibrated::new(&known, 0.95).unwrap();
+        let [small, large] = [0.1, 0.9].map(|x| calibrated.half_width(&[x, 0.5]));
+        assert!(large > 10.0 * small, "{small} {large}");
+    }
+
+    /// 19 cases are the fewest from which one in twenty can be told.
+    #[test]
+    fn too_few_cases_tell_nothing() {
+        assert!(Calibrated::new(&cases(18, 1), 0.95).is_none());
+        assert!(Calibrated::new(&cases(19, 1), 0.95).is_some());
+    }
+}

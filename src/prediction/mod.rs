@@ -1,0 +1,123 @@
+//! How far a reduced model of a scene without a reference can be trusted: intervals that hold what a reference would say.
+//!
+//! They come from the errors of model C in similar scenes of the validation base. Models A and B are judged by model C of the same
+//! scene: what they differ by is known.
+
+mod base;
+mod conformal;
+
+pub use base::{Solved, solved};
+pub use conformal::{Calibrated, Case};
+
+use crate::kinds::{self, Place};
+use crate::result::Summary;
+use crate::scene::Scene;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Share of intervals that hold the reference's value.
+pub const LEVEL: f64 = 0.95;
+/// Quantities with intervals.
+pub const QUANTITIES: [&str; 8] = [
+    "efficiency",
+    "outer_velocity_final",
+    "inner_velocity_final",
+    "outer_force_peak",
+    "inner_force_peak",
+    "outer_contact_end",
+    "inner_contact_end",
+    "first_frequency",
+];
+
+/// What a reference would say of a quantity.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Interval {
+    /// Least value, SI.
+    pub low: f64,
+    /// Largest value, SI.
+    pub high: f64,
+    /// Probability that it holds the reference's value.
+    pub level: f64,
+    /// Scenes of the base that it comes from.
+    pub scenes: usize,
+    /// What they have in common.
+    pub stratum: &'static str,
+}
+
+/// Intervals by quantity, or why there are none.
+pub type Prediction = Result<BTreeMap<&'static str, Interval>, String>;
+
+/// What a reference of `scene` would say, where model C has the summary `continuum`.
+///
+/// # Errors
+/// A sentence where the scene is unlike those of the base.
+pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
+    let kind = kinds::of(scene);
+    let stratum = kind.stratum(scene)?;
+    let place = kind.place(scene, continuum).ok_or("the result does not tell its contact radius")?;
+    let others: Vec<&Solved> = solved()
+        .iter()
+        .filter(|other| other.stratum == stratum && Some(other.hash.as_str()) != Some(&continuum.scene_hash))
+        .collect();
+    within(&others, &place, &kind.proportions(scene))?;
+    let speed = kind.approach(scene).map_err(|error| error.to_string())?.outer_speed;
+    let mut found = BTreeMap::new();
+    for quantity in QUANTITIES {
+        let Some(value) = continuum.value(quantity) else { continue };
+        let cases = cases(&others, quantity);
+        let Some(calibrated) = Calibrated::new(&cases, LEVEL) else { continue };
+        let half = calibrated.half_width(&coordinates(&place)) * scale(quantity, value, speed);
+        let (low, high, scenes) = (value - half, value + half, cases.len());
+        found.insert(quantity, Interval { low, high, level: LEVEL, scenes, stratum });
+    }
+    match found.is_empty() {
+        true => Err(format!("the validation base has only {} scenes of the group `{stratum}`", others.len())),
+        false => Ok(found),
+    }
+}
+
+/// Errors of model C in `scenes`, relative to [`scale`].
+pub fn cases(scenes: &[&Solved], quantity: &str) -> Vec<Case> {
+    let case = |scene: &&Solved| {
+        let [model, reference] = scene.values(quantity)?;
+        let error = (model - reference).abs() / scale(quantity, model, scene.speed);
+        Some(Case { place: coordinates(&scene.place?), error }).filter(|case| case.error.is_finite())
+    };
+    scenes.iter().filter_map(case).collect()
+}
+
+/// Where a scene lies, for neighbours: the logarithms of its numbers.
+pub fn coordinates(place: &Place) -> Vec<f64> {
+    place.measures().into_iter().chain(place.stokes_number).map(f64::ln).collect()
+}
+
+/// What the error of a quantity with this `value` is relative to: the value, of a velocity the `speed` of the impact in m/s.
+pub fn scale(quantity: &str, value: f64, speed: f64) -> f64 {
+    if quantity.ends_with("_velocity_final") { speed } else { value.abs() }
+}
+
+/// Whether numbers lie within those of `others`.
+///
+/// # Errors
+/// A sentence that names the first one that does not.
+fn within(others: &[&Solved], place: &Place, proportions: &[(&'static str, f64)]) -> Result<(), String> {
+    let measures = kinds::MEASURES.into_iter().zip(place.measures()).enumerate();
+    let of_place = measures.map(|(k, (name, own))| {
+        let known = others.iter().filter_map(|other| Some(other.place?.measures()[k]));
+        (name, own, known.collect::<Vec<f64>>())
+    });
+    let of_scene = proportions.iter().map(|(name, own)| {
+        let known = others.iter().filter_map(|other| other.proportions.get(*name).copied());
+        (*name, *own, known.collect())
+    });
+    for (name, own, known) in of_place.chain(of_scene) {
+        let low = known.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = known.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if !known.is_empty() && !(low..=high).contains(&own) {
+            return Err(format!(
+                "the scene lies beyond the validation base: {name} is {own:.3}, there it is {low:.3} to {high:.3}"
+            ));
+        }
+    }
+    Ok(())
+}
