@@ -1,4 +1,4 @@
-//! Records of binary formats, as `fem_reference` hands them on: channels with names, units and clocks.
+//! Records that consist of channels with names, units and clocks: binary formats, as `fem_reference` hands them on, and some of text.
 
 use super::column::{Column, Titles};
 use super::no_time;

@@ -214,7 +214,7 @@ mod tests {
             panic!("a seat has no records")
         };
         let expected =
-            "scene `NAME` is of kind `seal-seat`, but this runs scenes of kind `plate-impact` only";
+            "scene `NAME` is of kind `seal-seat`, but this runs scenes of kind `plate-impact` or `impact` only";
         assert_eq!(refused.to_string(), expected);
         assert!(serving(&scene, Use::MeshFile).is_ok());
     }

@@ -122,7 +122,7 @@ fn a_history_of_the_program_is_a_record() {
     assert!(found["records"][0]["shift"].as_f64().unwrap().abs() < 2e-6, "{found}");
 }
 
-/// Models and measurement need no reference: a store without one, and no report.
+/// Models and measurement need no reference: a store without one. The page has both.
 #[test]
 fn measured_files_are_compared_with_the_models_alone() {
     let folder = tempfile::tempdir().unwrap();
@@ -138,7 +138,11 @@ fn measured_files_are_compared_with_the_models_alone() {
     assert!((found["records"][0]["efficiency"].as_f64().unwrap() - 0.6946).abs() < 0.001, "{found}");
     let ended = impactcheck(&arguments);
     assert_eq!(ended.status, 0, "{}", ended.error);
-    assert!(flat(&ended.error).contains(&flat("no report page")) && !out.join("index.html").exists());
+    assert!(flat(&ended.error).contains(&flat("page: ")) && !out.join("index.html").exists());
+    let page = fs::read_to_string(out.join("mine-measured.html")).unwrap();
+    let [models, measurement] = ["id=\"models\"", "id=\"measurement\""].map(|part| page.find(part).unwrap());
+    assert!(models < measurement && page.contains("record.csv") && page.contains("Measured and computed"));
+    assert!(out.join("mine-measured.svg").is_file() && out.join("mine-measured.png").is_file());
     let line =
         |name: &str| ended.out.lines().find(|line| line.trim_start().starts_with(name)).unwrap().to_owned();
     assert!(line("C ").contains("within") && line("A ").contains("model error shown"), "{}", ended.out);
@@ -157,7 +161,8 @@ fn bad_measured_files_end_with_2_or_3_and_nothing_is_written() {
         (vec!["scaled-plate-r10", "--measured", "no-such.csv"], 2, "no-such.csv"),
         (vec!["scaled-plate-r10", "--measured", text(&wrong)], 3, "wrong.csv"),
         (vec!["scaled-plate-r10", "--measured", text(&late)], 3, "late.csv"),
-        (vec!["--measured", text(&good)], 2, "exactly one plate impact"),
+        (vec!["--measured", text(&good)], 2, "exactly one scene"),
+        (vec!["seal-seat-initial", "--measured", text(&good)], 3, "of kind `plate-impact` or `impact` only"),
         (vec!["scaled-plate-r10", "--measured", text(&good), "--bandwidth", "3 mm"], 2, "bandwidth"),
         (vec!["scaled-plate-r10", "--measured", text(&good), "--bandwidth", "1 Hz"], 2, "bandwidth"),
         (vec!["scaled-plate-r10", "--measured", text(&good), "--speed", "guess"], 2, "speed"),
