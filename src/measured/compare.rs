@@ -191,8 +191,8 @@ pub fn compare(
             })
         })
         .collect::<Result<Vec<_>>>()?;
-    let [efficiency, restitution] =
-        ["efficiency", "outer_restitution"].map(|name| shown.series.clone().filter(|_| approach.key() == name));
+    let [efficiency, restitution] = ["efficiency", "outer_restitution"]
+        .map(|name| shown.series.clone().filter(|_| approach.key() == name));
     Ok(Measured {
         key: approach.key(),
         restitution,

@@ -339,7 +339,8 @@ impl Alignment<'_> {
         let single = if inner_mass.is_some() { inner } else { outer };
         let Some(single) = single.filter(|_| self.approach.outer_is_rigid) else { return Ok(None) };
         let outer = outer.filter(|_| inner_mass.is_some()).unwrap_or((0.0, 0.0));
-        let brought = 1.0 + inner_mass.map_or(0.0, |mass| mass / outer_mass * (inner_velocity / outer_speed).powi(2));
+        let brought =
+            1.0 + inner_mass.map_or(0.0, |mass| mass / outer_mass * (inner_velocity / outer_speed).powi(2));
         let (share, uncertainty) = (single.0 + outer.0, single.1.hypot(outer.1));
         if share - EXCESS * uncertainty < brought && single.0 <= brought {
             return Ok(None);
@@ -347,8 +348,12 @@ impl Alignment<'_> {
         let percent = |share: f64| format!("{:.1} %", 100.0 * share / brought);
         let (all, own, band) = (percent(share), percent(single.0), percent(single.1));
         let shares = match inner_mass {
-            Some(_) => format!("the bodies have {all} of the energy after the impact that they had before, the inner one {own} (95 % interval ±{band})"),
-            None => format!("the outer body has {own} of the energy after the impact that it had before (95 % interval ±{band})"),
+            Some(_) => format!(
+                "the bodies have {all} of the energy after the impact that they had before, the inner one {own} (95 % interval ±{band})"
+            ),
+            None => format!(
+                "the outer body has {own} of the energy after the impact that it had before (95 % interval ±{band})"
+            ),
         };
         let effect = format!(
             "{shares}; check scale and sign of the signals, and the masses and the outer body's speed in the scene"

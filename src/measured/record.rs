@@ -85,9 +85,8 @@ impl Record {
     /// and forces, but not of the velocity.
     fn is_computed(&self) -> bool {
         let first = |name: &str| self.channel(name).map(|channel| channel.values[0]);
-        let [outer, inner] = ["outer", "inner"].map(|body| {
-            ["displacement", "force"].map(|what| first(&format!("{body}_{what}")))
-        });
+        let [outer, inner] = ["outer", "inner"]
+            .map(|body| ["displacement", "force"].map(|what| first(&format!("{body}_{what}"))));
         let moves = first("outer_velocity").is_some_and(|velocity| velocity != 0.0);
         // without an inner body, or without a contact of its own, these are missing
         let is_inner = inner.into_iter().flatten().all(|value| value == 0.0);
@@ -175,7 +174,8 @@ impl Record {
         unknown.map_or(Ok(()), |channel| {
             let known = SIGNALS.into_iter().filter(|name| kind.has(scene, name));
             Err(Error::Scene(miette::miette!(
-                help = "leave the column out of the map, or compare the record with a scene that has this body",
+                help =
+                    "leave the column out of the map, or compare the record with a scene that has this body",
                 "{}: `{}` is measured, but scene `{}` has only {}",
                 self.file.display(),
                 channel.quantity,

@@ -150,7 +150,8 @@ pub fn measured_alone(found: &Measured) -> String {
 fn measured_table(found: &Measured) -> String {
     let points = |value: f64| significant(100.0 * value, 2);
     let mut table = TextTable { rows: Vec::new() };
-    let headings = [&*format!("{}, %", measured::key_in_words(found)), "E, points", "95 %"].map(str::to_owned);
+    let headings =
+        [&*format!("{}, %", measured::key_in_words(found)), "E, points", "95 %"].map(str::to_owned);
     table.row("against measured", headings.into(), String::new());
     for comparator in &found.partners {
         let Some((value, difference)) = comparator.key().zip(comparator.key_difference()) else { continue };

@@ -188,8 +188,9 @@ fn one_signal_is_enough_and_missing_free_flight_is_reported() {
     };
     let late = part(&|t| t > 0.0);
     let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();
-    let error = align(&late, &filtered, determined(&truth, &setup), &approach(&setup), (BANDWIDTH, Speed::Scene))
-        .unwrap_err();
+    let error =
+        align(&late, &filtered, determined(&truth, &setup), &approach(&setup), (BANDWIDTH, Speed::Scene))
+            .unwrap_err();
     assert_eq!(error.exit_status() as u8, 3);
     // 5 us of it, some fifty samples, are before the first touch, but the instrument smears the impact over all of them
     let said = error.to_string().replace('\u{2502}', " ").split_whitespace().collect::<Vec<_>>().join(" ");

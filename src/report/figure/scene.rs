@@ -66,7 +66,8 @@ fn scene_drawing(report: &SceneReport, geometry: &FigureGeometry, theme: Theme) 
 /// bodies of the scene called `scene`, filtered to the instrument's bandwidth.
 pub fn measured_figure(scene: &str, measured: &Measured, theme: Theme) -> String {
     let has_reference = measured.partners.iter().any(|comparator| comparator.partner == REFERENCE);
-    let results = if has_reference { ", reduced models and finite-element reference" } else { " and reduced models" };
+    let results =
+        if has_reference { ", reduced models and finite-element reference" } else { " and reduced models" };
     let lines = measured_lines(measured);
     let [displacement, velocity] = MOTION;
     let panels = [displacement, PanelOf { boxes: measured.key == "efficiency", ..velocity }];

@@ -17,7 +17,11 @@ pub(crate) fn measured_page(scene: &Scene, models: &[Outcome], measured: &Measur
     let all = [
         Section::new("models", "Models", table(scene, models)),
         Section::new("measurement", "Measurement", measured_html(name, measured)),
-        Section::new("scene", "The scene (SI units)", facts(&[("", serde_json::to_value(scene).ok().as_ref())])),
+        Section::new(
+            "scene",
+            "The scene (SI units)",
+            facts(&[("", serde_json::to_value(scene).ok().as_ref())]),
+        ),
     ];
     let body = html! {
         h1 { (name) ": measurement" }
@@ -32,9 +36,13 @@ pub(crate) fn measured_page(scene: &Scene, models: &[Outcome], measured: &Measur
 fn table(scene: &Scene, models: &[Outcome]) -> Markup {
     let columns = kinds::of(scene).columns();
     let name = |outcome: &Outcome| {
-        format!("Model {}", model_name(outcome.summary.model.as_deref().unwrap_or("?"), outcome.summary.modes))
+        format!(
+            "Model {}",
+            model_name(outcome.summary.model.as_deref().unwrap_or("?"), outcome.summary.modes)
+        )
     };
-    let warnings = models.iter().flat_map(|one| one.summary.warnings.iter().map(move |text| (name(one), text)));
+    let warnings =
+        models.iter().flat_map(|one| one.summary.warnings.iter().map(move |text| (name(one), text)));
     html! {
         (scrolled("Models", &html! { table {
             thead { tr { th {} @for column in columns { th scope="col" { (column.label()) } } } }

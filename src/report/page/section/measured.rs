@@ -19,8 +19,7 @@ pub fn efficiency_figure(scene: &str, measured: &Measured) -> Option<String> {
         return None;
     }
     let impacts = measured.records.iter().enumerate();
-    let points =
-        impacts.filter_map(|(k, record)| Some((k as f64 + 1.0, 100.0 * record.key()?))).collect();
+    let points = impacts.filter_map(|(k, record)| Some((k as f64 + 1.0, 100.0 * record.key()?))).collect();
     let last = measured.records.len() as f64;
     let level = |comparator: &MeasuredComparison| Series {
         name: if comparator.partner == "reference" {
@@ -28,9 +27,7 @@ pub fn efficiency_figure(scene: &str, measured: &Measured) -> Option<String> {
         } else {
             format!("model {}", comparator.partner)
         },
-        points: comparator
-            .key()
-            .map_or_else(Vec::new, |own| vec![(1.0, 100.0 * own), (last, 100.0 * own)]),
+        points: comparator.key().map_or_else(Vec::new, |own| vec![(1.0, 100.0 * own), (last, 100.0 * own)]),
         ..Series::default()
     };
     let series = measured.partners.iter().map(level).chain([Series {
@@ -39,8 +36,7 @@ pub fn efficiency_figure(scene: &str, measured: &Measured) -> Option<String> {
         marks: true,
         ..Series::default()
     }]);
-    let band =
-        measured.key_series().and_then(|e| Some((100.0 * e.mean, 100.0 * e.standard_deviation?)));
+    let band = measured.key_series().and_then(|e| Some((100.0 * e.mean, 100.0 * e.standard_deviation?)));
     let panel = ChartPanel {
         x_label: "Number of the impact".into(),
         y_label: format!("{} in %", capitalised(key_in_words(measured))),
@@ -163,16 +159,15 @@ fn alignment(measured: &Measured) -> Rows {
 }
 
 fn metrics(measured: &Measured) -> Rows {
-    let heading = ["result", key_in_words(measured), "difference", "curve", "Sprague-Geers", "Russell", "ISO/TS 18571"];
+    let heading =
+        ["result", key_in_words(measured), "difference", "curve", "Sprague-Geers", "Russell", "ISO/TS 18571"];
     let score = |value: Option<f64>| value.map_or("–".into(), |v| significant(v, 3));
     let mut rows: Rows = vec![heading.map(str::to_owned).into()];
     for comparator in &measured.partners {
         for curve in &comparator.curves {
             rows.push(vec![
                 comparator.partner.clone(),
-                comparator
-                    .key()
-                    .map_or("–".into(), |own| format!("{} %", significant(100.0 * own, 4))),
+                comparator.key().map_or("–".into(), |own| format!("{} %", significant(100.0 * own, 4))),
                 comparator
                     .key_difference()
                     .map_or("–".into(), |d| format!("{} percentage points", significant(100.0 * d, 3))),
