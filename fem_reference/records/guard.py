@@ -1,5 +1,7 @@
-"""Reads a record in a process of its own: on damaged files libraries in C crash, never end, or
-decompress without bound."""
+"""Reads a record in a process of its own.
+
+On damaged files libraries in C crash, never end, or decompress without bound.
+"""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from fem_reference.common.errors import SceneError
 from fem_reference.records.command import COLUMNS
 from fem_reference.records.guard import guarded
 
-from .record_files import FORCE, VELOCITY, function, read, refused, write_tdms, write_uff
+from .record_files import FORCE, VELOCITY, function, refused, write_tdms, write_uff
 
 
 def test_uff_without_times_or_cut_is_refused(tmp_path: Path) -> None:

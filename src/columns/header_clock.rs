@@ -22,9 +22,9 @@ pub(super) fn stated(text: &str) -> Option<[f64; 2]> {
             number(below.get(place)?)
         };
         let behind = |name: &str| {
-            let parts = names.iter().filter_map(|cell| cell.split_once('='));
-            let value = parts.filter(|(of, _)| of.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value);
-            number(value.last()?.trim().trim_end_matches(['s', 'S']).trim_end())
+            let mut parts = names.iter().filter_map(|cell| cell.split_once('='));
+            let (_, value) = parts.find(|(of, _)| of.trim().eq_ignore_ascii_case(name))?;
+            number(value.trim().trim_end_matches(['s', 'S']).trim_end())
         };
         let found = beneath("start").zip(beneath("increment")).or_else(|| behind("t0").zip(behind("tinc")));
         if let Some((start, interval)) = found.filter(|(t, dt)| t.is_finite() && dt.is_finite() && *dt > 0.0)

@@ -69,7 +69,8 @@ impl MmeFile {
         }
         if found.is_empty() {
             return Err(
-                "has no channel: neither beside it nor in a folder Channel is a file such as TEST.001".into(),
+                "has no channel: there is no file such as TEST.001 in its folder or in a folder Channel"
+                    .into(),
             );
         }
         let codes: Vec<String> = found.iter().map(|channel| channel.code.clone()).collect();

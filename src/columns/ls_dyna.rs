@@ -52,7 +52,7 @@ impl DynaFile {
     /// One sentence with the line.
     pub(super) fn channels(self, text: &str) -> Result<Vec<RawChannel>, String> {
         let mut blocks = Blocks::default();
-        let mut state = State::default();
+        let mut state = BlockState::default();
         for (k, line) in text.lines().enumerate() {
             let read = match self {
                 Self::Nodout => state.node(line, &mut blocks),
@@ -68,7 +68,7 @@ impl DynaFile {
 
 /// What the lines before say of the next one.
 #[derive(Default)]
-struct State {
+struct BlockState {
     /// Headings of the numbers of a node.
     headings: Vec<String>,
     /// Number of the part.
@@ -112,7 +112,7 @@ fn of_model(line: &str, blocks: &mut Blocks) -> Result<(), String> {
     }
 }
 
-impl State {
+impl BlockState {
     fn node(&mut self, line: &str, blocks: &mut Blocks) -> Result<(), String> {
         if is_nodes(line) {
             let time = line.rsplit_once("at time").map(|(_, time)| time.trim_matches([' ', ')']));

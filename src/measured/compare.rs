@@ -158,7 +158,7 @@ pub fn compare(
             record.file.display()
         )));
     }
-    let (curves, shown) = (sampled(record, window), Shown::of(&records, approach.key()));
+    let (curves, shown) = (sampled(record, window), RecordedQuantity::of(&records, approach.key()));
     // one of both is not known of a scene
     let of_key = |name: &str, value: Option<f64>| value.filter(|_| approach.key() == name);
     // another program need not give the curves that are measured
@@ -209,7 +209,7 @@ pub fn compare(
 }
 
 /// What the records show of a quantity.
-struct Shown {
+struct RecordedQuantity {
     quantity: &'static str,
     series: Option<Series>,
     /// Standard uncertainty of the mean: the scatter and the noise of each, both over the root of their number; `None` if nothing
@@ -217,7 +217,7 @@ struct Shown {
     u_d: Option<f64>,
 }
 
-impl Shown {
+impl RecordedQuantity {
     fn of(records: &[AlignedRecord], quantity: &'static str) -> Self {
         let impacts = || records.iter().filter(|record| !record.is_copy);
         let series = Series::of(impacts().filter_map(AlignedRecord::key).collect());
@@ -229,7 +229,7 @@ impl Shown {
             // the scatter has the noise in it already
             Some((variance.max(noise) / count).sqrt()).filter(|u| *u > 0.0)
         });
-        Shown { quantity, series, u_d }
+        RecordedQuantity { quantity, series, u_d }
     }
 
     /// What a result has of it less the mean.

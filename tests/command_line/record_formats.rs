@@ -69,9 +69,9 @@ fn ls_dyna_text_is_read_by_a_map() {
         let step = format!(
             "\n\n\n n o d a l   p r i n t   o u t   f o r   t i m e  s t e p{k:8}                              ( at time{t:14.7E} )\n\n"
         );
-        let _ = write!(
+        let _ = writeln!(
             nodes,
-            "{step} nodal point  x-disp     y-disp      z-disp      x-vel       y-vel       z-vel\n"
+            "{step} nodal point  x-disp     y-disp      z-disp      x-vel       y-vel       z-vel"
         );
         for (node, velocity) in [(7, outer), (4012, inner)] {
             let _ = writeln!(
@@ -80,11 +80,11 @@ fn ls_dyna_text_is_read_by_a_map() {
                 1e3 * velocity
             );
         }
-        let _ = write!(
+        let _ = writeln!(
             nodes,
-            "{step} nodal point  x-rot      y-rot       z-rot\n        7  0.0000E+00  0.0000E+00  0.0000E+00\n"
+            "{step} nodal point  x-rot      y-rot       z-rot\n        7  0.0000E+00  0.0000E+00  0.0000E+00"
         );
-        let _ = write!(parts, "\n\n time ={t:13.4E}\n");
+        let _ = writeln!(parts, "\n\n time ={t:13.4E}");
         for (part, velocity) in [(1, outer), (3, inner)] {
             let _ = writeln!(
                 parts,
@@ -210,9 +210,9 @@ fn calculix_prints_are_records() {
     for (k, [outer, inner]) in velocities(folder.path()).into_iter().enumerate() {
         let t = INTERVAL * k as f64;
         for (set, velocity) in [("NOUTER", outer), ("NINNER", inner)] {
-            let _ = write!(
+            let _ = writeln!(
                 printed,
-                "\n velocities (vx,vy,vz) for set {set} and time  {t:.7E}\n\n         1  0.000000E+00  0.000000E+00 {velocity:13.6E}\n         2  0.000000E+00  0.000000E+00 {velocity:13.6E}\n"
+                "\n velocities (vx,vy,vz) for set {set} and time  {t:.7E}\n\n         1  0.000000E+00  0.000000E+00 {velocity:13.6E}\n         2  0.000000E+00  0.000000E+00 {velocity:13.6E}"
             );
         }
         let _ = writeln!(table, "{t:e};{outer:.7};{inner:.7}");
