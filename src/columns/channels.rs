@@ -17,6 +17,13 @@ pub struct RawChannel {
     pub clock: ChannelClock,
 }
 
+impl RawChannel {
+    /// The place of the channel with its times.
+    pub(super) fn times(&self) -> Option<usize> {
+        if let ChannelClock::Channel(place) = self.clock { Some(place) } else { None }
+    }
+}
+
 /// When the samples of a channel were taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ChannelClock {

@@ -115,7 +115,7 @@ pub fn read(text: &str, map: &Map, known: &[Curve], fewest: usize) -> Result<Rea
             quantity(interval, "s", 4)
         )
     }));
-    how.extend(left_out(&layout.titles, &all));
+    how.extend(left_out(&layout.titles, &all, &[]));
     let form = map::written_form(&layout, map.table.encoding.as_deref());
     Ok(ReadTable { columns, map: map_of(map, &form, &layout.titles, &all), how: in_words(&how) })
 }
@@ -132,7 +132,8 @@ fn read_channels(
     let wanted = signals(&titles, &all, known)?;
     let times = all.iter().find(|column| column.name == "time");
     let columns = channels::read(channels, map.even()?, times, &wanted, fewest)?;
-    let how: Vec<String> = left_out(&titles, &all).into_iter().collect();
+    let clocks: Vec<usize> = all.iter().filter_map(|column| channels[column.index].times()).collect();
+    let how: Vec<String> = left_out(&titles, &all, &clocks).into_iter().collect();
     Ok(ReadTable { columns, map: map_of(map, "", &titles, &all), how: in_words(&how) })
 }
 
@@ -161,9 +162,11 @@ fn map_of(map: &Map, form: &str, titles: &Titles, all: &[Column]) -> String {
     if map.columns.is_empty() { map::written(form, titles, all) } else { map.text.clone() }
 }
 
-/// The columns that were not read.
-fn left_out(titles: &Titles, all: &[Column]) -> Option<String> {
-    let is_read = |k: usize| all.iter().any(|column| column.index == k || column.clock == Some(k));
+/// The columns that were not read; those with the places `clocks` have the times of others.
+fn left_out(titles: &Titles, all: &[Column], clocks: &[usize]) -> Option<String> {
+    let is_read = |k: usize| {
+        clocks.contains(&k) || all.iter().any(|column| column.index == k || column.clock == Some(k))
+    };
     let others = titles.headings.iter().enumerate().filter(|(k, _)| !is_read(*k));
     let others: Vec<&str> = others.map(|(_, heading)| heading.as_str()).collect();
     (!others.is_empty()).then(|| format!("not used: {}", column::listed(&others, ", ")))

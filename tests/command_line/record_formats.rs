@@ -96,7 +96,9 @@ fn ls_dyna_text_is_read_by_a_map() {
     let nodout = file(folder.path(), "nodout", &nodes);
     let map = "[columns]\nouter_velocity = { column = \"node 7 z-vel\", unit = \"mm/s\" }\n\
                inner_velocity = { column = \"node 4012 z-vel\", unit = \"mm/s\" }\n";
-    assert_read(&compared(folder.path(), &nodout, map).0, -START);
+    let (record, said) = compared(folder.path(), &nodout, map);
+    assert_read(&record, -START);
+    assert!(flat(&said).contains(&flat("not used: node 7 x-disp")), "{said}");
     let matsum = file(folder.path(), "matsum", &parts);
     let map = "[columns]\nouter_velocity = { column = \"part 1 z-rbv\" }\ninner_velocity = { column = \"part 3 z-rbv\" }\n";
     assert_read(&compared(folder.path(), &matsum, map).0, -START);
