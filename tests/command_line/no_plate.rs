@@ -134,6 +134,9 @@ fn records_of_a_rebound_show_the_restitution() {
     assert!(said.contains("Measured restitution: 100.00 %") && said.contains("restitution, %"), "{said}");
     let page = fs::read_to_string(folder.path().join("report/wall-measured.html")).unwrap();
     assert!(page.contains(">restitution<") && !page.contains("Efficiency in %"));
+    // there is no inner body to name
+    assert!(page.contains(">outer</text>") && !page.contains(">inner</text>"));
+    assert!(!page.contains("not determined"));
 
     let inner = table.lines().enumerate();
     let inner: String =
