@@ -156,12 +156,6 @@ def rigol(file: Path, record: Record) -> None:
     write(file, head + [f"{k},{o:.6e},{i:.6e}," for k, (o, i) in enumerate(both)], newline="\r\n")
 
 
-def rigol_map(record: Record) -> str:
-    """Map of such a file: no column has the times."""
-    start, interval = even(record)
-    return f'[time]\nstart = "{start:.6e} s"\ninterval = "{interval:.6e} s"\n' + volts("CH1", "CH2")
-
-
 def digilent(file: Path, record: Record) -> None:
     """WaveForms: comments, an empty line, units in the headings; as its readers expect it."""
     _, interval = even(record)
@@ -394,7 +388,7 @@ def forms(record: Record) -> dict[str, Form]:
             "csv", keysight, volts("2", "3", seconds('"x-axis"'), "Volt")
         ),
         "LeCroy, inner alone": Form("csv", lecroy, volts("", "Ampl", seconds('"Time"'))),
-        "Rigol DS1000Z": Form("csv", rigol, rigol_map(record)),
+        "Rigol DS1000Z": Form("csv", rigol, volts("CH1", "CH2")),
         "Digilent WaveForms": Form(
             "csv", digilent, volts("Channel 1 (V)", "Channel 2 (V)", seconds('"Time (s)"'))
         ),

@@ -87,16 +87,18 @@ def _parser() -> argparse.ArgumentParser:
     )
     for name, study in STUDIES.items():
         study.arguments(commands.add_parser(name, help=study.help))
-    commands.add_parser("versions", help="versions of everything a result depends on")
+    versions = commands.add_parser("versions", help="versions of everything a result depends on")
+    versions.add_argument("modules", nargs="*", help="of these modules alone, which is faster")
     return parser
 
 
 def _run(arguments: argparse.Namespace) -> None:
     # Only `versions` must work without the finite-element modules: import late.
     if arguments.command == "versions":
-        from .common.versions import installed
+        from .common.versions import installed, of_modules
 
-        print(json.dumps(installed(), indent=2))
+        modules = arguments.modules
+        print(json.dumps(of_modules(modules) if modules else installed(), indent=2))
         return
     use_writable_cache()
     try:

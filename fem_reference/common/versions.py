@@ -59,6 +59,11 @@ def _compiler() -> str | None:
         return None
 
 
+def of_modules(modules: list[str]) -> dict[str, str | None]:
+    """Versions of Python and of some modules alone; None where one is missing."""
+    return {"python": platform.python_version(), **{name: _version(name) for name in modules}}
+
+
 def versions() -> dict[str, str | None]:
     """Version per program or module; None where it is missing."""
     mpi = _mpi()  # first: the wheels of PyPI find the libmpi that mpi4py has loaded, and no other

@@ -1,9 +1,13 @@
-"""Reads a record in a process of its own: libraries in C crash or never end on damaged files."""
+"""Reads a record in a process of its own.
+
+On damaged files libraries in C crash, never end, or decompress without bound.
+"""
 
 from __future__ import annotations
 
 import multiprocessing
 import os
+import resource
 import signal
 from collections.abc import Callable
 from multiprocessing.connection import Connection
@@ -16,6 +20,10 @@ LEAST_SECONDS = 60.0
 """Time for any file."""
 BYTES_PER_SECOND = 1e6
 """Of a file; formats as text are read ten times as fast, binary ones a hundred times."""
+
+
+MOST_MEMORY = 3_000_000_000
+"""Bytes that reading may take: twice the largest record as doubles."""
 
 
 def seconds_for(file: Path) -> float:
@@ -62,6 +70,9 @@ def _read(read: Callable[[], None], sender: Connection, parent: int) -> None:
         signal.signal(number, signal.SIG_DFL)
     os.environ[PARENT] = str(parent)
     end_with_parent()
+    _, most = resource.getrlimit(resource.RLIMIT_DATA)
+    least = MOST_MEMORY if most == resource.RLIM_INFINITY else min(MOST_MEMORY, most)
+    resource.setrlimit(resource.RLIMIT_DATA, (least, most))
     try:
         read()
     except RunError as error:

@@ -391,6 +391,17 @@ def test_versions_without_dolfinx(tmp_path: Path) -> None:
     assert "module is missing" in json.loads(failed.stdout.splitlines()[-1])["message"]
 
 
+def test_versions_of_some_modules_import_no_others(tmp_path: Path) -> None:
+    (tmp_path / "dolfinx.py").write_text("raise SystemExit('imported')")
+    path = f"{tmp_path}{os.pathsep}{ROOT}"
+    result = call("versions", "numpy", "no_such_module", PYTHONPATH=path)
+    assert result.returncode == 0
+    found = json.loads(result.stdout)
+    assert found["numpy"] == np.__version__ and found["no_such_module"] is None
+    assert set(found) == {"python", "numpy", "no_such_module"}
+    assert call("versions", "dolfinx", PYTHONPATH=path).returncode != 0
+
+
 def test_missing_compiler_is_named(tmp_path: Path) -> None:
     result = call(
         "solve", "--scene", scene_file(tmp_path), "--out", tmp_path / "out", CC="no-such-compiler"

@@ -91,6 +91,7 @@ pub fn calibrate(
     let ranges =
         fields.iter().zip(&nominal).map(|(field, x)| (field.path(), [x * (1.0 - REACH), x * (1.0 + REACH)]));
     let approach = kinds::of(template.scene()).approach(template.scene())?;
+    records.iter().try_for_each(|record| record.require_in(template.scene()))?;
     let series = kinds::series(ranges, template.scene(), None, IMPACTS)?;
     let run = |values: &[f64]| {
         let numbers: Vec<(&Field, f64)> = fields.iter().zip(values.iter().copied()).collect();
@@ -98,7 +99,7 @@ pub fn calibrate(
         series.model(scene, model, None)?.run_with_history(TOLERANCE)
     };
     let start = run(&nominal)?;
-    let ends = ContactEnds::of(&start.summary).ok_or_else(|| Error::Solver(CUT.into()))?;
+    let ends = ContactEnds::of(&start.summary, &approach).ok_or_else(|| Error::Solver(CUT.into()))?;
     let filtered = Filtered::new(&start.history, bandwidth)?;
     let how = (bandwidth, speed);
     let aligned = align_all(records, &filtered, ends, &approach, how)?;

@@ -136,6 +136,8 @@ mod tests {
             inner_velocity_final: None,
             efficiency: None,
             efficiency_uncertainty: None,
+            restitution: None,
+            restitution_uncertainty: None,
             findings: Vec::new(),
             is_copy: false,
             noise: vec![0.0],

@@ -59,9 +59,10 @@ fn measured_alone(
     missing: &Error,
 ) -> Result<ExitStatus> {
     context.note(super::describe(missing));
-    let found = job.measured_alone(context)?;
+    let (found, outcomes) = job.measured_alone(context)?;
     arguments.json.print(&found, |found| report::measured_alone(&found.measured))?;
-    context.note(format_args!("models are compared with the measurement alone; there is no report page"));
+    let page = report::write_measured(&job.scenes[0].1, &outcomes, &found.measured, job.out())?;
+    context.note(format_args!("models are compared with the measurement alone; page: {}", page.display()));
     Ok(ExitStatus::Pass)
 }
 

@@ -36,7 +36,8 @@ pub struct Arguments {
     pub(super) reference_check: bool,
     /// Measured histories: tables of text with headings such as `time [us]`, `outer_velocity [mm/s]`, or with --map.
     /// Several files, separated by commas or spaces, are repeated impacts; files joined by + have the channels of one.
-    /// Binary formats (UFF 58, TDMS, MAT, HDF5, Parquet, WAV) need Python
+    /// Text of LS-DYNA, OpenRadioss, CalculiX and ISO-MME is read too; binary formats (UFF 58, TDMS, MAT, HDF5, Parquet,
+    /// WAV) need Python
     #[arg(long, value_delimiter = ',', value_name = "FILE")]
     pub(super) measured: Vec<PathBuf>,
     #[command(flatten)]

@@ -96,13 +96,16 @@ pub(super) fn records(
     scenes: &[(PathBuf, Scene)],
     how: &RecordMap,
 ) -> Result<Vec<Record>> {
-    let measurable = scenes.iter().filter(|(_, scene)| kinds::of(scene).serves(Use::Records)).count();
-    if !files.is_empty() && (measurable != 1 || scenes.len() != 1) {
+    if files.is_empty() {
+        return Ok(Vec::new());
+    }
+    let [(_, scene)] = scenes else {
         return Err(Error::Usage(format!(
-            "--measured needs exactly one plate impact, to which the files belong; there are {} scenes, {measurable} of that kind",
+            "--measured needs exactly one scene, to which the files belong; there are {}",
             scenes.len()
         )));
-    }
+    };
+    kinds::serving(scene, Use::Records)?;
     how.records(context, files)
 }
 

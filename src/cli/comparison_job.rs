@@ -131,11 +131,11 @@ impl<'a> Job<'a> {
         &self.arguments.out
     }
 
-    /// The measured records of the scene compared with its models alone, without a reference.
+    /// The measured records of the scene compared with its models alone, without a reference, and the models' results.
     ///
     /// # Errors
     /// Those of models and records; [`Error::Usage`] if no model runs without a reference.
-    pub(super) fn measured_alone(&self, context: &Context) -> Result<MeasuredAlone> {
+    pub(super) fn measured_alone(&self, context: &Context) -> Result<(MeasuredAlone, Vec<Outcome>)> {
         let [(file, scene)] = &self.scenes[..] else {
             return Err(Error::Internal("records of several scenes".into()));
         };
@@ -147,12 +147,11 @@ impl<'a> Job<'a> {
         let how = (self.arguments.bandwidth, self.arguments.speed);
         let measured = measured::compare(scene, &self.records, &comparators, how, &propagations)?;
         let summaries = reduced.iter().map(|outcome| outcome.summary.clone()).collect();
-        Ok(MeasuredAlone {
-            schema_version: SCHEMA_VERSION,
-            scene: scene.name.clone(),
-            models: summaries,
-            measured,
-        })
+        let name = scene.name.clone();
+        Ok((
+            MeasuredAlone { schema_version: SCHEMA_VERSION, scene: name, models: summaries, measured },
+            reduced,
+        ))
     }
 
     /// References from the store (or computed), and the reduced models' runs, of every scene.

@@ -4,7 +4,7 @@ use super::Context;
 use crate::columns::Map;
 use crate::error::{Error, Result};
 use crate::measured::{ReadRecord, Record};
-use crate::reference::record_source;
+use crate::reference::{record_bytes, record_source};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -60,10 +60,7 @@ fn read_record(named: &Path, map: &Map) -> Result<ReadRecord> {
 }
 
 fn read_file(file: &Path, map: &Map) -> Result<ReadRecord> {
-    let bytes = std::fs::read(file).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound => Error::Usage(format!("there is no measured file {}", file.display())),
-        _ => Error::io("reading", file, e),
-    })?;
+    let bytes = record_bytes(file)?;
     Record::of(file, &record_source(file, &bytes, map)?, map)
 }
 

@@ -1,4 +1,4 @@
-//! Records of binary formats, as `fem_reference` hands them on: channels with names, units and clocks.
+//! Records that consist of channels with names, units and clocks: binary formats, as `fem_reference` hands them on, and some of text.
 
 use super::column::{Column, Titles};
 use super::no_time;
@@ -15,6 +15,13 @@ pub struct RawChannel {
     pub values: Vec<f64>,
     /// When they were taken.
     pub clock: ChannelClock,
+}
+
+impl RawChannel {
+    /// The place of the channel with its times.
+    pub(super) fn times(&self) -> Option<usize> {
+        if let ChannelClock::Channel(place) = self.clock { Some(place) } else { None }
+    }
 }
 
 /// When the samples of a channel were taken.

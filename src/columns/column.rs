@@ -19,8 +19,10 @@ const TIMES: [&str; 12] = [
     "seconds",
     "x",
 ];
+/// The unit of row numbers, as Rigol writes it.
+pub(super) const ROW_NUMBERS: &str = "Sequence";
 /// Names of units that instruments write out.
-const WRITTEN_OUT: [(&str, &str); 16] = [
+const WRITTEN_OUT: [(&str, &str); 18] = [
     ("second", "s"),
     ("seconds", "s"),
     ("sec", "s"),
@@ -36,6 +38,8 @@ const WRITTEN_OUT: [(&str, &str); 16] = [
     ("meter", "m"),
     ("m/s2", "m/s^2"),
     ("m/s²", "m/s^2"),
+    ("m/(s*s)", "m/s^2"),
+    ("m/s/s", "m/s^2"),
     ("strain", "1"),
 ];
 
@@ -143,7 +147,24 @@ pub struct Titles {
     pub units: Vec<String>,
 }
 
+/// Most headings that a message lists.
+const LISTED: usize = 40;
+
+/// The first of the `names`, and how many more there are.
+pub(super) fn listed<S: AsRef<str>>(names: &[S], between: &str) -> String {
+    let first: Vec<&str> = names.iter().take(LISTED).map(AsRef::as_ref).collect();
+    match names.len().saturating_sub(LISTED) {
+        0 => first.join(between),
+        more => format!("{}{between}and {more} more", first.join(between)),
+    }
+}
+
 impl Titles {
+    /// The headings, for a message.
+    pub(super) fn listed(&self) -> String {
+        listed(&self.headings, " | ")
+    }
+
     /// The unit of a column: as it stands apart, or in its heading.
     pub(super) fn unit_of(&self, index: usize) -> Option<&str> {
         let stated = self.units.get(index).filter(|unit| !unit.is_empty());
@@ -205,7 +226,8 @@ pub(super) fn by_heading(titles: &Titles, known: &[Curve]) -> Result<Vec<Column>
         let (name, _) = split_heading(heading)?;
         let name = without_groups(name, known);
         let lower = name.to_lowercase();
-        let is_time = TIMES.contains(&lower.as_str());
+        // "X" heads the numbers of the rows, too
+        let is_time = TIMES.contains(&lower.as_str()) && titles.unit_of(index) != Some(ROW_NUMBERS);
         let Some((name, measures)) =
             (if is_time { Some(("time", Measures::Other)) } else { named(name, known)? })
         else {

@@ -1,6 +1,6 @@
 //! Where the numbers of a text begin, what separates them, and the headings above them.
 
-use super::column::Titles;
+use super::column::{ROW_NUMBERS, Titles};
 use super::map::TableForm;
 use super::rows::number;
 use std::ops::Range;
@@ -109,7 +109,9 @@ impl TextLayout {
             true => headings(&above, &numeric, form.units_line, is_unit),
             false => (Vec::new(), Vec::new()),
         };
-        let name = |k: usize| headings.get(k).filter(|name| !name.is_empty()).cloned();
+        // titles of programs are padded with spaces
+        let close = |name: &String| name.split_whitespace().collect::<Vec<&str>>().join(" ");
+        let name = |k: usize| headings.get(k).map(close).filter(|name| !name.is_empty());
         Ok(Self {
             delimiter,
             decimal,
@@ -185,6 +187,9 @@ fn separators(shown: &[&str], form: &TableForm, one: bool) -> Result<(char, char
             }
         }
     }
+    if best.1.is_none() && !one && separators(shown, form, true).is_ok() {
+        return Err("has one column of numbers, but times and a signal are needed: state start and interval under [time] in a map".into());
+    }
     best.1.ok_or_else(|| {
         let first = shown.first().map_or("nothing", |line| line.trim());
         let first: String = first.chars().take(60).collect();
@@ -205,8 +210,7 @@ fn headings(
     let has_units = |row: &Vec<String>| {
         let filled: Vec<String> =
             numeric.iter().map(|k| bare(&cell(row, *k))).filter(|unit| !unit.is_empty()).collect();
-        // the unit of row numbers, as Rigol writes it
-        !filled.is_empty() && filled.iter().all(|unit| is_unit(unit) || unit == "Sequence")
+        !filled.is_empty() && filled.iter().all(|unit| is_unit(unit) || unit == ROW_NUMBERS)
     };
     let fits = |row: &&Vec<String>| {
         row.len() >= last && numeric.iter().any(|k| kind(&cell(row, *k), '.') == CellKind::Text)

@@ -1,7 +1,7 @@
 //! A map: how a file is to be read. Which column is which curve, in which unit and sign, and what is known of who made it. Everything in it may
 //! be missing: what is not said is inferred from the file.
 
-use super::column::{Column, Measures, Titles, known_column, unit_in_si};
+use super::column::{Column, Measures, Titles, known_column, listed, unit_in_si};
 use super::layout::TextLayout;
 use crate::result::{Curve, Quantity};
 use crate::scene::quantity_in;
@@ -113,6 +113,7 @@ pub(super) struct Mapped {
     /// What is added after unit and sign.
     offset: Option<SiNumber>,
     /// What the column measures, if not what the curve is.
+    #[serde(alias = "kind")]
     quantity: Option<Measures>,
     /// What a volt, or a strain of 1, stands for.
     sensitivity: Option<String>,
@@ -262,13 +263,23 @@ impl ColumnPlace {
 
     fn index(&self, headings: &[String]) -> Result<usize, String> {
         let absent =
-            |what: String| format!("there is no column {what} (there are: {})", headings.join(" | "));
+            |what: String| format!("there is no column {what} (there are: {})", listed(headings, " | "));
         match self {
             ColumnPlace::Number(number @ 1..) if *number <= headings.len() => Ok(number - 1),
             ColumnPlace::Number(number) => Err(absent(number.to_string())),
             ColumnPlace::Heading(heading) => {
-                let found = headings.iter().enumerate().filter(|(_, other)| other.trim() == heading.trim());
-                match found.map(|(place, _)| place).collect::<Vec<_>>()[..] {
+                let places = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
+                    let found = headings.iter().enumerate().filter(|(_, other)| is(other));
+                    found.map(|(place, _)| place).collect()
+                };
+                let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<String>>();
+                let named = words(heading);
+                let mut found = places(&|other| words(other) == named);
+                // a channel of a group, or one with a code, may be called by its own name alone
+                if found.is_empty() {
+                    found = places(&|other| other.split('/').any(|part| words(part) == named));
+                }
+                match found[..] {
                     [place] => Ok(place),
                     [] => Err(absent(format!("`{heading}`"))),
                     _ => Err(format!(

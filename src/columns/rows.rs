@@ -82,7 +82,15 @@ impl<'t> RowsSoFar<'t> {
 
     /// The number in a cell, not a number where it is missing.
     fn number(&self, row: &csv::StringRecord, index: usize, name: &str, line: usize) -> Result<f64, String> {
-        let cell = row.get(index).unwrap_or_default().trim();
+        let cell = row.get(index).unwrap_or_default();
+        // nearly all cells are plain numbers: a record may have millions
+        if self.decimal == '.'
+            && let Ok(number) = cell.parse::<f64>()
+            && number.is_finite()
+        {
+            return Ok(number);
+        }
+        let cell = cell.trim();
         match layout::value(cell, self.decimal) {
             Some(number) if number.is_finite() => Ok(number),
             _ if is_missing(cell) => Ok(f64::NAN),
@@ -91,7 +99,7 @@ impl<'t> RowsSoFar<'t> {
     }
 
     fn add(&mut self, row: &csv::StringRecord, line: usize) -> Result<(), String> {
-        if row.iter().all(|cell| cell.trim().is_empty()) {
+        if row.iter().all(|cell| cell.bytes().all(|byte| byte == b' ')) {
             return Ok(());
         }
         let time = match self.clock {
@@ -158,9 +166,35 @@ pub fn number(text: &str) -> Option<f64> {
     })
 }
 
+/// The values that C's `%12.5E` or Fortran's `1PE12.4` wrote one after another. Some systems write three digits of an exponent, and then a negative value
+/// is wider than its column; but every value has one digit before its point.
+pub(super) fn packed(text: &str) -> Option<Vec<f64>> {
+    let text = text.is_ascii().then(|| text.trim_end())?;
+    let is_minus = |at: usize| text.as_bytes()[at] == b'-';
+    let begins = |point: usize| {
+        let digit = point.checked_sub(1)?;
+        let minus = digit.checked_sub(1).filter(|at| is_minus(*at));
+        Some(minus.unwrap_or(digit))
+    };
+    let mut begins: Vec<usize> =
+        text.match_indices('.').map(|(point, _)| begins(point)).collect::<Option<_>>()?;
+    begins.push(text.len());
+    let values = begins.windows(2).map(|pair| number(text[pair[0]..pair[1]].trim_end()));
+    text[..begins[0]].trim().is_empty().then(|| values.collect())?
+}
+
 #[cfg(test)]
 mod tests {
-    use super::number;
+    use super::{number, packed};
+
+    #[test]
+    fn values_without_a_space_between_them_are_apart() {
+        let values = packed("  0.0000E+00-1.0000E-04 2.5000-101-1.5000-101").expect("numbers");
+        assert_eq!(values, [0.0, -1e-4, 2.5e-101, -1.5e-101]);
+        for text in ["1 2 3", "1.0E+00 x 2.0E+00", "1.0E+00µ"] {
+            assert_eq!(packed(text), None, "{text}");
+        }
+    }
 
     #[test]
     fn numbers_of_fortran_are_numbers() {

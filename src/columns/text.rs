@@ -30,13 +30,24 @@ pub fn decoded<'b>(bytes: &'b [u8], encoding: Option<&str>) -> Result<Cow<'b, st
         Cow::Borrowed(text) => Cow::Borrowed(text.trim_start_matches(MARK)),
         Cow::Owned(text) => Cow::Owned(text.trim_start_matches(MARK).to_owned()),
     };
-    match text.chars().take(SAMPLE).find(|c| c.is_control() && !c.is_whitespace()) {
+    // Windows has dashes and quotation marks where Latin-1 has further control characters
+    match text.chars().take(SAMPLE).find(|c| c.is_ascii_control() && !c.is_whitespace()) {
         Some(found) => Err(format!(
             "is no text: it has the character U+{:04X}; export it as text (CSV)",
             u32::from(found)
         )),
         None => Ok(text),
     }
+}
+
+/// Refuses a file whose beginning `head` no text has, before the rest is read.
+///
+/// # Errors
+/// As [`decoded`].
+pub fn require_text(head: &[u8]) -> Result<(), String> {
+    // a character may be cut at the end of the beginning: each byte is looked at alone
+    let encoding = if shown(head) == "utf-16" { "utf-16" } else { "latin-1" };
+    decoded(&head[..head.len() / 2 * 2], Some(encoding)).map(drop)
 }
 
 /// Characters that are looked at for what no text has.

@@ -226,8 +226,7 @@ mod tests {
         let Err(Error::Scene(refused)) = serving(&scene, Use::Records) else {
             panic!("a seat has no records")
         };
-        let expected =
-            "scene `NAME` is of kind `seal-seat`, but this runs scenes of kind `plate-impact` only";
+        let expected = "scene `NAME` is of kind `seal-seat`, but this runs scenes of kind `plate-impact` or `impact` only";
         assert_eq!(refused.to_string(), expected);
         assert!(serving(&scene, Use::MeshFile).is_ok());
     }

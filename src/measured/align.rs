@@ -77,6 +77,12 @@ pub struct AlignedRecord {
     pub efficiency: Option<f64>,
     /// Half width of its 95 % interval from the noise of the signals, whose samples are not independent.
     pub efficiency_uncertainty: Option<f64>,
+    /// Velocity of the outer body after the impact over that before it, of a scene whose outer body strikes what is held, with no inner body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<f64>,
+    /// Half width of its 95 % interval.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution_uncertainty: Option<f64>,
     /// What is wrong with the record.
     pub findings: Vec<Finding>,
     /// Whether it repeats an earlier record.
@@ -102,6 +108,18 @@ pub struct AlignedRecord {
     pub residuals: Vec<Vec<(f64, f64)>>,
 }
 
+impl AlignedRecord {
+    /// The efficiency, or without an inner body the restitution.
+    pub fn key(&self) -> Option<f64> {
+        self.efficiency.or(self.restitution)
+    }
+
+    /// Half width of its 95 % interval.
+    pub fn key_uncertainty(&self) -> Option<f64> {
+        self.efficiency_uncertainty.or(self.restitution_uncertainty)
+    }
+}
+
 /// Contact of a body: the instants between which it may not fly freely.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ContactSpan {
@@ -119,9 +137,11 @@ pub struct ContactEnds {
 }
 
 impl ContactEnds {
-    /// Those of a result; `None` if it was cut during a contact.
-    pub fn of(summary: &Summary) -> Option<Self> {
-        let [outer, inner] = ["outer_contact_end", "inner_contact_end"].map(|name| summary.value(name));
+    /// Those of a result after the `approach`; `None` if it was cut during a contact.
+    pub fn of(summary: &Summary, approach: &Approach) -> Option<Self> {
+        // bodies that meet have one contact
+        let own = if approach.has_inner_contact { "inner_contact_end" } else { "outer_contact_end" };
+        let [outer, inner] = ["outer_contact_end", own].map(|name| summary.value(name));
         Some(ContactEnds { outer: outer?, inner: inner? })
     }
 }
@@ -187,7 +207,7 @@ impl Alignment<'_> {
             values: channel.values.iter().zip(&time).map(|(y, t)| y - seen.taken_out(*t)).collect(),
         };
         let signals = self.record.channels.iter().zip(&seen).map(corrected).collect();
-        let JudgedRecord { outer_velocity_initial, inner, efficiency, findings: further } =
+        let JudgedRecord { outer_velocity_initial, inner, efficiency, restitution, findings: further } =
             self.judged(shift, &seen)?;
         // a signal at its limit differs from every scene, and is named once
         let is_clipped = findings.iter().any(|finding| finding.kind == FindingKind::Clipped);
@@ -206,6 +226,8 @@ impl Alignment<'_> {
             inner_velocity_final: inner,
             efficiency: efficiency.map(|(value, _)| value),
             efficiency_uncertainty: efficiency.map(|(_, uncertainty)| uncertainty),
+            restitution: restitution.map(|(value, _)| value),
+            restitution_uncertainty: restitution.map(|(_, uncertainty)| uncertainty),
             findings,
             is_copy: false,
             time,

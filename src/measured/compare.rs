@@ -35,6 +35,12 @@ pub struct Measured {
     pub records: Vec<AlignedRecord>,
     /// Efficiency over the records, each impact once; `None` if none of them shows one.
     pub efficiency: Option<Series>,
+    /// Restitution, of scenes without an inner body whose outer body strikes what is held.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<Series>,
+    /// Which of both is shown.
+    #[serde(skip)]
+    pub key: &'static str,
     /// Reference, if there is one, and models against the first record.
     pub partners: Vec<MeasuredComparison>,
     /// Time axis of the curves.
@@ -44,16 +50,35 @@ pub struct Measured {
     pub curves: Vec<SampledCurve>,
 }
 
+impl Measured {
+    /// The efficiency over the records, or without an inner body the restitution.
+    pub fn key_series(&self) -> Option<&Series> {
+        self.efficiency.as_ref().or(self.restitution.as_ref())
+    }
+}
+
+impl MeasuredComparison {
+    /// Its efficiency, or without an inner body its restitution.
+    pub fn key(&self) -> Option<f64> {
+        self.efficiency.or(self.restitution)
+    }
+
+    /// The same less the mean of the measured ones.
+    pub fn key_difference(&self) -> Option<f64> {
+        self.efficiency_difference.or(self.restitution_difference)
+    }
+}
+
 /// Mean and scatter of repeated impacts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Series {
-    /// Number of impacts that show an efficiency.
+    /// Number of impacts that show the quantity.
     pub count: usize,
     /// Mean.
     pub mean: f64,
     /// Standard deviation of the impacts; `None` for one.
     pub standard_deviation: Option<f64>,
-    /// The efficiencies, in the order of the records.
+    /// The values, in the order of the records.
     pub values: Vec<f64>,
 }
 
@@ -80,6 +105,12 @@ pub struct MeasuredComparison {
     pub efficiency: Option<f64>,
     /// Its efficiency less the mean of the measured ones.
     pub efficiency_difference: Option<f64>,
+    /// Its restitution, of scenes without an inner body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution: Option<f64>,
+    /// Its restitution less the mean of the measured ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub restitution_difference: Option<f64>,
     /// What that difference shows, the inputs being as uncertain as the scene says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub validation: Option<Assessment>,
@@ -108,6 +139,7 @@ pub fn compare(
 ) -> Result<Measured> {
     let kind = kinds::of(scene);
     let approach = kind.approach(scene)?;
+    records.iter().try_for_each(|record| record.require_in(scene))?;
     let Some(((lead, first), others)) = comparators.split_first() else {
         return Err(Error::Usage("there is no result to compare the record with".into()));
     };
@@ -115,7 +147,7 @@ pub fn compare(
     let window = CommonAxis::of_reference(first)
         .ok_or_else(|| Error::Reference(format!("the history of {who} of `{}` can't be used", scene.name)))?;
     let model = Filtered::new(&first.history, bandwidth)?;
-    let ends = ContactEnds::of(&first.summary)
+    let ends = ContactEnds::of(&first.summary, &approach)
         .ok_or_else(|| Error::Reference(format!("{who} of `{}`: {CUT}", scene.name)))?;
     let records = align_all(records, &model, ends, &approach, (bandwidth, speed))?;
     let record = records.first().ok_or_else(|| Error::Usage("no measured file is specified".into()))?;
@@ -126,7 +158,9 @@ pub fn compare(
             record.file.display()
         )));
     }
-    let (curves, efficiency) = (sampled(record, window), Efficiency::of(&records));
+    let (curves, shown) = (sampled(record, window), RecordedQuantity::of(&records, approach.key()));
+    // one of both is not known of a scene
+    let of_key = |name: &str, value: Option<f64>| value.filter(|_| approach.key() == name);
     // another program need not give the curves that are measured
     let shows = |outcome: &Outcome| curves.iter().all(|c| outcome.history.curve(c.quantity).is_some());
     let others = others.iter().filter(|(_, outcome)| shows(outcome));
@@ -143,11 +177,13 @@ pub fn compare(
                 })
                 .collect();
             let (validation, area) =
-                efficiency.assessed(&outcome.summary, propagated_of(propagations, comparator));
+                shown.assessed(&outcome.summary, propagated_of(propagations, comparator));
             Ok(MeasuredComparison {
                 partner: (*comparator).to_owned(),
                 efficiency: outcome.summary.value("efficiency"),
-                efficiency_difference: efficiency.difference(&outcome.summary),
+                efficiency_difference: of_key("efficiency", shown.difference(&outcome.summary)),
+                restitution: of_key("outer_restitution", outcome.summary.value("outer_restitution")),
+                restitution_difference: of_key("outer_restitution", shown.difference(&outcome.summary)),
                 validation,
                 area,
                 curves: metrics(kind.curves(), (&curves, &filtered), window),
@@ -155,8 +191,11 @@ pub fn compare(
             })
         })
         .collect::<Result<Vec<_>>>()?;
-    let efficiency = efficiency.series;
+    let [efficiency, restitution] = ["efficiency", "outer_restitution"]
+        .map(|name| shown.series.clone().filter(|_| approach.key() == name));
     Ok(Measured {
+        key: approach.key(),
+        restitution,
         rule: RULE,
         bandwidth,
         speed,
@@ -169,32 +208,33 @@ pub fn compare(
     })
 }
 
-/// What the records show of the efficiency.
-struct Efficiency {
+/// What the records show of a quantity.
+struct RecordedQuantity {
+    quantity: &'static str,
     series: Option<Series>,
     /// Standard uncertainty of the mean: the scatter and the noise of each, both over the root of their number; `None` if nothing
     /// is known of it.
     u_d: Option<f64>,
 }
 
-impl Efficiency {
-    fn of(records: &[AlignedRecord]) -> Self {
+impl RecordedQuantity {
+    fn of(records: &[AlignedRecord], quantity: &'static str) -> Self {
         let impacts = || records.iter().filter(|record| !record.is_copy);
-        let series = Series::of(impacts().filter_map(|record| record.efficiency).collect());
+        let series = Series::of(impacts().filter_map(AlignedRecord::key).collect());
         let u_d = series.as_ref().and_then(|series| {
             let count = series.count as f64;
-            let bands = impacts().filter_map(|record| record.efficiency_uncertainty);
+            let bands = impacts().filter_map(AlignedRecord::key_uncertainty);
             let noise = bands.map(|band| (band / NORMAL_95).powi(2)).sum::<f64>() / count;
             let variance = series.standard_deviation.map_or(0.0, |deviation| deviation.powi(2));
             // the scatter has the noise in it already
             Some((variance.max(noise) / count).sqrt()).filter(|u| *u > 0.0)
         });
-        Efficiency { series, u_d }
+        RecordedQuantity { quantity, series, u_d }
     }
 
-    /// A result's efficiency less the mean.
+    /// What a result has of it less the mean.
     fn difference(&self, summary: &Summary) -> Option<f64> {
-        Some(summary.value("efficiency")? - self.series.as_ref()?.mean)
+        Some(summary.value(self.quantity)? - self.series.as_ref()?.mean)
     }
 
     /// What the difference of a result shows, given its propagated input uncertainty `propagated`, and the area between both
@@ -204,15 +244,15 @@ impl Efficiency {
         summary: &Summary,
         propagated: Option<&PropagatedUncertainty>,
     ) -> (Option<Assessment>, Option<Area>) {
-        let propagated = propagated.and_then(|propagated| propagated.quantities.get("efficiency"));
+        let propagated = propagated.and_then(|propagated| propagated.quantities.get(self.quantity));
         let Some(error) = self.difference(summary) else { return (None, None) };
-        let sides = (numerical(summary, "efficiency"), self.u_d);
+        let sides = (numerical(summary, self.quantity), self.u_d);
         let Some(propagated) = propagated else {
             return (Assessment::of_exact_inputs(error, sides, "1"), None);
         };
         let assessment = Assessment::of(error, sides, propagated);
         // the distribution about the result itself
-        let shift = summary.value("efficiency").unwrap_or(f64::NAN) - propagated.nominal.unwrap_or(f64::NAN);
+        let shift = summary.value(self.quantity).unwrap_or(f64::NAN) - propagated.nominal.unwrap_or(f64::NAN);
         let moved: Vec<f64> = propagated.values.iter().map(|value| value + shift).collect();
         let values = self.series.as_ref().map_or(&[][..], |series| &series.values);
         (assessment, Area::between(&moved, values).filter(|area| area.area.is_finite()))

@@ -57,6 +57,8 @@ pub(super) struct JudgedRecord {
     pub inner: Option<f64>,
     /// Efficiency and the half width of its 95 % interval.
     pub efficiency: Option<(f64, f64)>,
+    /// The same of the restitution, of an outer body that strikes what is held, with no inner body.
+    pub restitution: Option<(f64, f64)>,
     pub findings: Vec<Finding>,
 }
 
@@ -96,22 +98,28 @@ impl Alignment<'_> {
         let initial_error = trusted.and_then(|seen| seen.errors).map_or(0.0, |errors| errors.before);
         let [inner, outer] = ["inner", "outer"].map(|body| of(body).and_then(Seen::after));
         let inner = inner.or_else(|| self.pushed(shift, seen));
-        let masses = self.approach.masses;
+        let Approach { outer_mass, inner_mass, is_held, .. } = *self.approach;
         // kinetic energy over that of the outer body before the impact, and the half width of its 95 % interval
         let share = |mass: f64, (velocity, error): (f64, f64)| {
             let ratio = velocity / outer_velocity_initial;
             let error = error.hypot(ratio * initial_error) / outer_velocity_initial;
-            let scale = mass / masses[0];
+            let scale = mass / outer_mass;
             (scale * ratio.powi(2), NORMAL_95 * 2.0 * scale * (ratio * error).abs())
         };
-        let efficiency = inner.map(|after| share(masses[1], after));
+        let efficiency = inner.zip(inner_mass).map(|(after, mass)| share(mass, after));
+        let restitution = outer.filter(|_| inner_mass.is_none() && is_held).map(|(velocity, error)| {
+            let ratio = -velocity / outer_velocity_initial;
+            let error = error.hypot(ratio * initial_error) / outer_velocity_initial;
+            (ratio, NORMAL_95 * error.abs())
+        });
         let mut findings: Vec<Finding> = seen.iter().flat_map(|seen| self.of_signal(shift, seen)).collect();
         findings.extend(self.delay(shift, seen)?);
-        findings.extend(self.energy(shift, efficiency, outer.map(|after| share(masses[0], after)))?);
+        findings.extend(self.energy(shift, efficiency, outer.map(|after| share(outer_mass, after)))?);
         Ok(JudgedRecord {
             outer_velocity_initial,
             inner: inner.map(|(velocity, _)| velocity),
             efficiency,
+            restitution,
             findings,
         })
     }
@@ -137,7 +145,7 @@ impl Alignment<'_> {
         let flight = before.last().map_or(0.0, |last| last.0 - before[0].0);
         let noise = errors.before * (flight * length).sqrt();
         let error = (errors.before * length).hypot(drift).hypot(noise);
-        let mass = self.approach.masses[1];
+        let mass = self.approach.inner_mass?;
         Some((self.approach.inner_velocity - impulse / mass, error / mass))
     }
 
@@ -318,8 +326,8 @@ impl Alignment<'_> {
         Ok(seen.iter().zip(&own).skip(1).filter_map(late).collect())
     }
 
-    /// Refuses an inner body with more kinetic energy than both had before; a finding if the uncertainty leaves that open, or if both
-    /// bodies together have more.
+    /// Refuses an inner body, or an outer one without an inner one, with more kinetic energy than both had before; a finding if the
+    /// uncertainty leaves that open, or if both bodies together have more.
     fn energy(
         &self,
         shift: f64,
@@ -327,21 +335,30 @@ impl Alignment<'_> {
         outer: Option<(f64, f64)>,
     ) -> Result<Option<Finding>> {
         // an elastic outer body has energy besides that of its motion, a driven one gets more
-        let Some(inner) = inner.filter(|_| self.approach.outer_is_rigid) else { return Ok(None) };
-        let outer = outer.unwrap_or((0.0, 0.0));
-        let Approach { outer_speed, inner_velocity, masses, .. } = self.approach;
-        let brought = 1.0 + masses[1] / masses[0] * (inner_velocity / outer_speed).powi(2);
-        let (share, uncertainty) = (inner.0 + outer.0, inner.1.hypot(outer.1));
-        if share - EXCESS * uncertainty < brought && inner.0 <= brought {
+        let Approach { outer_speed, inner_velocity, outer_mass, inner_mass, .. } = *self.approach;
+        let single = if inner_mass.is_some() { inner } else { outer };
+        let Some(single) = single.filter(|_| self.approach.outer_is_rigid) else { return Ok(None) };
+        let outer = outer.filter(|_| inner_mass.is_some()).unwrap_or((0.0, 0.0));
+        let brought =
+            1.0 + inner_mass.map_or(0.0, |mass| mass / outer_mass * (inner_velocity / outer_speed).powi(2));
+        let (share, uncertainty) = (single.0 + outer.0, single.1.hypot(outer.1));
+        if share - EXCESS * uncertainty < brought && single.0 <= brought {
             return Ok(None);
         }
+        let percent = |share: f64| format!("{:.1} %", 100.0 * share / brought);
+        let (all, own, band) = (percent(share), percent(single.0), percent(single.1));
+        let shares = match inner_mass {
+            Some(_) => format!(
+                "the bodies have {all} of the energy after the impact that they had before, the inner one {own} (95 % interval ±{band})"
+            ),
+            None => format!(
+                "the outer body has {own} of the energy after the impact that it had before (95 % interval ±{band})"
+            ),
+        };
         let effect = format!(
-            "the bodies have {:.1} % of the energy after the impact that they had before, the inner one {:.1} % (95 % interval ±{:.1} %); check scale and sign of the signals, and the masses and the outer body's speed in the scene",
-            100.0 * share / brought,
-            100.0 * inner.0 / brought,
-            100.0 * inner.1 / brought
+            "{shares}; check scale and sign of the signals, and the masses and the outer body's speed in the scene"
         );
-        if inner.0 - IMPOSSIBLE * inner.1 > brought {
+        if single.0 - IMPOSSIBLE * single.1 > brought {
             return Err(Error::Scene(miette::miette!(
                 help = "something else than the impact may act on the body too: a stop, a further strike, a sensor that drifts",
                 "{}: no impact gives energy: {effect}",

@@ -4,8 +4,9 @@ use super::filter::SIGNALS;
 use crate::columns::{Columns, Map, ReadTable, RecordSource};
 use crate::curves::MonotoneCubic;
 use crate::error::{Error, Result};
-use crate::kinds::KINDS;
+use crate::kinds::{self, KINDS};
 use crate::result::Curve;
+use crate::scene::Scene;
 use std::path::{Path, PathBuf};
 
 /// Fewest samples of a record.
@@ -80,12 +81,16 @@ impl Record {
         Ok(ReadRecord { record, map, how })
     }
 
-    /// Whether it is a history that a program has computed from the first touch on: no instrument begins with zeros of time, of both
-    /// displacements and of both forces.
+    /// Whether it is a history that a program has computed from the first touch on: no instrument begins with zeros of time, displacements
+    /// and forces, but not of the velocity.
     fn is_computed(&self) -> bool {
-        let zeros = ["outer_displacement", "inner_displacement", "outer_force", "inner_force"];
-        let is_zero = |name: &&str| self.channel(name).is_some_and(|channel| channel.values[0] == 0.0);
-        self.time[0] == 0.0 && zeros.iter().all(is_zero)
+        let first = |name: &str| self.channel(name).map(|channel| channel.values[0]);
+        let [outer, inner] = ["outer", "inner"]
+            .map(|body| ["displacement", "force"].map(|what| first(&format!("{body}_{what}"))));
+        let moves = first("outer_velocity").is_some_and(|velocity| velocity != 0.0);
+        // without an inner body, or without a contact of its own, these are missing
+        let is_inner = inner.into_iter().flatten().all(|value| value == 0.0);
+        self.time[0] == 0.0 && moves && outer == [Some(0.0); 2] && is_inner
     }
 
     /// A computed history with the free flights that it leaves out: before the first touch, and behind its end if no force acts there.
@@ -157,6 +162,27 @@ impl Record {
             gaps: self.gaps.clone(),
             integrals: self.integrals.clone(),
         }
+    }
+
+    /// Refuses a signal that results of `scene` do not have: of an inner body where there is none, or of a contact of its own.
+    ///
+    /// # Errors
+    /// [`Error::Scene`] with the signal.
+    pub fn require_in(&self, scene: &Scene) -> Result<()> {
+        let kind = kinds::of(scene);
+        let unknown = self.channels.iter().find(|channel| !kind.has(scene, channel.quantity));
+        unknown.map_or(Ok(()), |channel| {
+            let known = SIGNALS.into_iter().filter(|name| kind.has(scene, name));
+            Err(Error::Scene(miette::miette!(
+                help =
+                    "leave the column out of the map, or compare the record with a scene that has this body",
+                "{}: `{}` is measured, but scene `{}` has only {}",
+                self.file.display(),
+                channel.quantity,
+                scene.name,
+                known.collect::<Vec<_>>().join(", ")
+            )))
+        })
     }
 
     /// The signal called `quantity`.

@@ -32,7 +32,7 @@ pub use identity::{revision, settings_hash};
 pub use import::{Imported, read_import};
 pub use kinds::*;
 pub use python::{prefer_python, python};
-pub use records::record_source;
+pub use records::{record_bytes, record_source};
 pub use section::MeshSection;
 pub use solid_stress::SolidStress;
 pub use solve::{Wish, solve, solve_with};

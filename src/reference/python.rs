@@ -30,13 +30,18 @@ enum Purpose {
 }
 
 impl Purpose {
+    /// The modules that it needs alone; those of FEniCSx take seconds to import. `None` = all.
+    fn modules(self) -> Option<&'static [&'static str]> {
+        match self {
+            Purpose::References => None,
+            Purpose::Meshes => Some(&["gmsh", "meshio", "numpy", "scipy"]),
+            Purpose::Records => Some(&["numpy", "scipy"]),
+        }
+    }
+
     /// Whether it needs the module called `name`.
     fn needs(self, name: &str) -> bool {
-        match self {
-            Purpose::References => true,
-            Purpose::Meshes => ["python", "gmsh", "meshio", "numpy", "scipy"].contains(&name),
-            Purpose::Records => ["python", "numpy", "scipy"].contains(&name),
-        }
+        self.modules().is_none_or(|modules| name == "python" || modules.contains(&name))
     }
 
     /// What is needed, and how it is installed.
@@ -80,11 +85,15 @@ pub(super) struct Interpreter {
 }
 
 impl Interpreter {
-    /// Lets the interpreter import all that a reference needs; a module that is there but broken counts as missing.
-    pub(super) fn probe(candidate: &PythonCandidate) -> std::result::Result<Self, String> {
+    /// Lets the interpreter import the `modules`, or all that a reference needs; a module that is there but broken counts as missing.
+    fn probe(candidate: &PythonCandidate, modules: Option<&[&str]>) -> std::result::Result<Self, String> {
         let PythonCandidate { path, origin } = candidate;
         let mut command = fem_reference(path).map_err(|e| e.to_string())?;
-        let output = command.arg("versions").output().map_err(|e| format!("it can't be run ({e})"))?;
+        let output = command
+            .arg("versions")
+            .args(modules.unwrap_or_default())
+            .output()
+            .map_err(|e| format!("it can't be run ({e})"))?;
         let text = String::from_utf8_lossy(&output.stdout);
         // Modules may print while they are imported; the answer comes last.
         let answer = text.rfind('{').and_then(|at| serde_json::from_str(&text[at..]).ok());
@@ -154,7 +163,9 @@ fn found_for(purpose: Purpose) -> Result<PathBuf> {
 fn find(purpose: Purpose, candidates: &[PythonCandidate]) -> Result<PathBuf> {
     let mut faults = Vec::new();
     for candidate in candidates {
-        match Interpreter::probe(candidate).map(|interpreter| interpreter.fault_for(purpose)) {
+        match Interpreter::probe(candidate, purpose.modules())
+            .map(|interpreter| interpreter.fault_for(purpose))
+        {
             Ok(None) => return Ok(candidate.path.clone()),
             Ok(Some(fault)) | Err(fault) => faults.push(format!("{}: {fault}", candidate.path.display())),
         }
@@ -170,7 +181,7 @@ fn find(purpose: Purpose, candidates: &[PythonCandidate]) -> Result<PathBuf> {
 pub(super) fn survey() -> Vec<(PythonCandidate, std::result::Result<Interpreter, String>)> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let candidates = candidates(named(), &project_root().unwrap_or_default(), &path);
-    candidates.into_iter().map(|c| (c.clone(), Interpreter::probe(&c))).collect()
+    candidates.into_iter().map(|c| (c.clone(), Interpreter::probe(&c, None))).collect()
 }
 
 fn named() -> Option<PathBuf> {

@@ -1,12 +1,54 @@
-//! Records in binary formats, which libraries of Python read.
+//! What a file of a record consists of; binary formats are read by libraries of Python.
 
 use super::kinds::run_to_end;
 use super::python;
-use crate::columns::{ChannelClock, Map, RawChannel, RecordSource, decoded, is_binary};
+use crate::columns::{ChannelClock, Map, RawChannel, RecordSource, is_binary, require_text};
 use crate::interrupt::Scratch;
 use crate::{Error, Result};
 use serde::Deserialize;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
+
+/// Bytes of a file's beginning that show whether it is text.
+const HEAD: u64 = 4096;
+/// Most bytes of a text: 20 million samples of five channels.
+const MOST_BYTES: u64 = 2_000_000_000;
+
+/// The content of the `file` of a record or a result, of a binary one the beginning alone, for [`record_source`].
+///
+/// # Errors
+/// [`Error::Usage`] if there is none, [`Error::Scene`] if it is neither text nor of a format that is known, empty or too large,
+/// [`Error::Io`] if it can't be read.
+pub fn record_bytes(file: &Path) -> Result<Vec<u8>> {
+    let refused = |reason: String| Error::Scene(miette::miette!("{}: {reason}", file.display()));
+    let failed = |e: std::io::Error| match e.kind() {
+        ErrorKind::NotFound => Error::Usage(format!("there is no measured file {}", file.display())),
+        _ => Error::io("reading", file, e),
+    };
+    let about = std::fs::metadata(file).map_err(failed)?;
+    if !about.is_file() {
+        return Err(Error::Usage(format!("{} is no file; name a file with a record", file.display())));
+    }
+    if about.len() == 0 {
+        return Err(refused("is empty".into()));
+    }
+    let mut bytes = Vec::new();
+    let mut opened = File::open(file).map_err(failed)?;
+    (&mut opened).take(HEAD).read_to_end(&mut bytes).map_err(failed)?;
+    if is_binary(&bytes) {
+        return Ok(bytes);
+    }
+    require_text(&bytes).map_err(refused)?;
+    if about.len() > MOST_BYTES {
+        return Err(refused(format!(
+            "has {} bytes; at most {MOST_BYTES} are read of a text; export the stretch around the impact",
+            about.len()
+        )));
+    }
+    opened.take(MOST_BYTES).read_to_end(&mut bytes).map_err(failed)?;
+    Ok(bytes)
+}
 
 /// What the record or the result of another program in `file`, with the content `bytes`, consists of.
 ///
@@ -15,8 +57,7 @@ use std::path::Path;
 pub fn record_source<'b>(file: &Path, bytes: &'b [u8], map: &Map) -> Result<RecordSource<'b>> {
     match is_binary(bytes) {
         true => channels(file).map(RecordSource::Channels),
-        false => decoded(bytes, map.table.encoding.as_deref())
-            .map(RecordSource::Text)
+        false => RecordSource::of_text(file, bytes, map)
             .map_err(|reason| Error::Scene(miette::miette!("{}: {reason}", file.display()))),
     }
 }

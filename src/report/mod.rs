@@ -35,7 +35,7 @@ pub use page::moves::moves_page;
 pub use page::scene::scene_page;
 pub use page::section::measured::efficiency_figure;
 pub use terminal::{Width, alone, measured_alone, terminal};
-pub use write::{check_writable, write};
+pub use write::{check_writable, write, write_measured};
 
 pub use crate::plot::Theme;
 

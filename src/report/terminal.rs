@@ -146,21 +146,19 @@ pub fn measured_alone(found: &Measured) -> String {
     warnings.collect::<String>() + &wrapped(&measured::sentence(found)) + &measured_table(found)
 }
 
-/// Of each result the error of its efficiency against the measured one, that error's 95 % band, and what it shows.
+/// Of each result the error of its efficiency, or restitution, against the measured one, that error's 95 % band, and what it shows.
 fn measured_table(found: &Measured) -> String {
     let points = |value: f64| significant(100.0 * value, 2);
     let mut table = TextTable { rows: Vec::new() };
-    let headings = ["efficiency, %", "E, points", "95 %"].map(str::to_owned);
+    let headings =
+        [&*format!("{}, %", measured::key_in_words(found)), "E, points", "95 %"].map(str::to_owned);
     table.row("against measured", headings.into(), String::new());
     for comparator in &found.partners {
-        let Some((efficiency, difference)) = comparator.efficiency.zip(comparator.efficiency_difference)
-        else {
-            continue;
-        };
+        let Some((value, difference)) = comparator.key().zip(comparator.key_difference()) else { continue };
         let of = comparator.validation.as_ref();
         let band = of.map_or("–".to_owned(), |of| format!("±{}", points(COVERAGE * of.u_val)));
         let shows = of.map_or(String::new(), |of| of.verdict.words().to_owned());
-        let cells = vec![significant(100.0 * efficiency, 4), points(difference), band];
+        let cells = vec![significant(100.0 * value, 4), points(difference), band];
         table.row(&comparator.partner, cells, shows);
     }
     if table.rows.len() > 1 { table.text() } else { String::new() }

@@ -2,23 +2,28 @@
 
 use crate::error::{Error, Result};
 use crate::interrupt::Scratch;
+use crate::measured::Measured;
 use crate::report::ci::junit::JUnit;
 use crate::report::ci::markdown::Markdown;
 use crate::report::existing::{self, ExistingScene, Folder};
 use crate::report::export::{Csv, Export, Json};
+use crate::report::kinds::Drawing;
 use crate::report::page::coverage;
 use crate::report::page::index::Index;
+use crate::report::page::measured::measured_page;
 use crate::report::page::scene::Page;
 use crate::report::page::validated_map::{self, ValidatedMap};
 use crate::report::run_times::same_but_for_run_times;
 use crate::report::{Report, SceneReport, kinds};
+use crate::result::Outcome;
+use crate::scene::Scene;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-/// Pixels of the PNG per unit of the drawing: 760 units are 2280 px, 300 dpi at a width of 19 cm.
-const PNG_SCALE: f32 = 3.0;
+/// What the page of a measurement without a reference adds to the name of the scene.
+const MEASURED: &str = "-measured";
 
 /// A format of what stands in a folder.
 type OfFolder = dyn for<'f> Export<Folder<'f>>;
@@ -44,7 +49,27 @@ const OF_SCENE: [&dyn for<'s> Export<SceneReport<'s>>; 2] = [&Csv, &Page];
 /// [`Error::Io`] naming the folder or file; [`Error::Usage`] for scenes whose names can't be file
 /// names or are the same.
 pub fn write(report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
-    let files = files(report, &existing::in_folder(report, dir))?;
+    write_files(files(report, &existing::in_folder(report, dir))?, dir)
+}
+
+/// Writes what records of `scene` show of its models, without a reference, into `dir`: `NAME-measured.html` and its figures, which no
+/// list of scenes names. Returns the page's path.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_measured(scene: &Scene, models: &[Outcome], measured: &Measured, dir: &Path) -> Result<PathBuf> {
+    let name = &scene.name;
+    require_file_name(name)?;
+    let page = format!("{name}{MEASURED}.html");
+    let mut files = vec![(page.clone(), measured_page(scene, models, measured).into_bytes())];
+    for drawing in Drawing::of_records(name, measured) {
+        files.extend(drawing.files(name)?);
+    }
+    write_files(files, dir)?;
+    Ok(dir.join(page))
+}
+
+fn write_files(files: Vec<(String, Vec<u8>)>, dir: &Path) -> Result<Vec<PathBuf>> {
     for (name, _) in &files {
         let target = dir.join(name);
         if target.is_dir() {
@@ -115,22 +140,23 @@ fn files(report: &Report, existing: &[ExistingScene]) -> Result<Vec<(String, Vec
     }
     for scene in &report.scenes {
         let name = &scene.comparison.scene;
-        if !is_file_name(name) {
-            return Err(Error::Usage(format!("scene name `{name}` can't be used as a file name")));
-        }
+        require_file_name(name)?;
         if !names.insert(name) || ["index", coverage::NAME].contains(&&**name) {
             return Err(Error::Usage(format!("scene name `{name}` occurs twice in the report")));
         }
         for drawing in kinds::of(scene.scene).drawings(scene) {
-            let stem = format!("{name}{}", drawing.ending);
-            files.push((format!("{stem}.png"), crate::plot::png(&drawing.svg, PNG_SCALE)?));
-            files.push((format!("{stem}.svg"), drawing.svg.into_bytes()));
+            files.extend(drawing.files(name)?);
         }
         for format in OF_SCENE {
             files.push((format!("{name}.{}", format.ending()), format.bytes(scene)?));
         }
     }
     Ok(files)
+}
+
+fn require_file_name(name: &str) -> Result<()> {
+    let refused = || Error::Usage(format!("scene name `{name}` can't be used as a file name"));
+    if is_file_name(name) { Ok(()) } else { Err(refused()) }
 }
 
 /// Whether `name` is one plain component of a path.

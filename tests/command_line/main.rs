@@ -17,6 +17,7 @@ mod measured;
 mod no_plate;
 mod optimise;
 mod program;
+mod record_formats;
 mod scene_files;
 mod second_program;
 mod snapshots;

@@ -122,7 +122,7 @@ fn a_history_of_the_program_is_a_record() {
     assert!(found["records"][0]["shift"].as_f64().unwrap().abs() < 2e-6, "{found}");
 }
 
-/// Models and measurement need no reference: a store without one, and no report.
+/// Models and measurement need no reference: a store without one. The page has both.
 #[test]
 fn measured_files_are_compared_with_the_models_alone() {
     let folder = tempfile::tempdir().unwrap();
@@ -138,7 +138,11 @@ fn measured_files_are_compared_with_the_models_alone() {
     assert!((found["records"][0]["efficiency"].as_f64().unwrap() - 0.6946).abs() < 0.001, "{found}");
     let ended = impactcheck(&arguments);
     assert_eq!(ended.status, 0, "{}", ended.error);
-    assert!(flat(&ended.error).contains(&flat("no report page")) && !out.join("index.html").exists());
+    assert!(flat(&ended.error).contains(&flat("page: ")) && !out.join("index.html").exists());
+    let page = fs::read_to_string(out.join("mine-measured.html")).unwrap();
+    let [models, measurement] = ["id=\"models\"", "id=\"measurement\""].map(|part| page.find(part).unwrap());
+    assert!(models < measurement && page.contains("record.csv") && page.contains("Measured and computed"));
+    assert!(out.join("mine-measured.svg").is_file() && out.join("mine-measured.png").is_file());
     let line =
         |name: &str| ended.out.lines().find(|line| line.trim_start().starts_with(name)).unwrap().to_owned();
     assert!(line("C ").contains("within") && line("A ").contains("model error shown"), "{}", ended.out);
@@ -157,7 +161,7 @@ fn bad_measured_files_end_with_2_or_3_and_nothing_is_written() {
         (vec!["scaled-plate-r10", "--measured", "no-such.csv"], 2, "no-such.csv"),
         (vec!["scaled-plate-r10", "--measured", text(&wrong)], 3, "wrong.csv"),
         (vec!["scaled-plate-r10", "--measured", text(&late)], 3, "late.csv"),
-        (vec!["--measured", text(&good)], 2, "exactly one plate impact"),
+        (vec!["--measured", text(&good)], 2, "exactly one scene"),
         (vec!["scaled-plate-r10", "--measured", text(&good), "--bandwidth", "3 mm"], 2, "bandwidth"),
         (vec!["scaled-plate-r10", "--measured", text(&good), "--bandwidth", "1 Hz"], 2, "bandwidth"),
         (vec!["scaled-plate-r10", "--measured", text(&good), "--speed", "guess"], 2, "speed"),
@@ -168,5 +172,53 @@ fn bad_measured_files_end_with_2_or_3_and_nothing_is_written() {
         assert_eq!(ended.status, status, "{all:?}: {}", ended.error);
         assert!(flat(&ended.error).contains(&flat(part)), "{all:?}: {}", ended.error);
         assert!(ended.out.is_empty() && !out.exists(), "{all:?}");
+    }
+    let seat =
+        ["compare", "seal-seat-initial", "--models", "C", "--measured", text(&good), "--out", text(&out)];
+    let ended = impactcheck(&seat);
+    assert_eq!(ended.status, 3, "{}", ended.error);
+    assert!(flat(&ended.error).contains(&flat("of kind `plate-impact` or `impact` only")), "{}", ended.error);
+}
+
+/// Files that are no records: one sentence each, and nothing is read of them that need not be.
+#[test]
+fn a_file_that_is_no_record_ends_in_a_sentence() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let table = fs::read(measured(folder.path(), "good.csv", 0.0)).unwrap();
+    let rubbish: Vec<u8> = (0..9000_u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+    let numbers = (0..90).map(|k| format!("{k}.5\n")).collect::<String>();
+    for (name, bytes) in [
+        ("empty.csv", &b""[..]),
+        ("rubbish.csv", &rubbish),
+        ("nul.csv", &[&table[..40], &[0; 8], &table[40..]].concat()),
+        ("column.csv", numbers.as_bytes()),
+        ("words.csv", b"nothing but\nwords\n"),
+        ("large.csv", &table),
+        ("cut.001", b"Channel code :A\nUnit :m/s\nSampling interval :1E-6\nNumber of samples :9\n1.0\n"),
+        ("nodout", b" n o d a l   p r i n t   o u t   f o r   t i m e  s t e p  1  ( at time 0.0E+00 )\n nodal point  z-vel\n  5  x\n"),
+    ] {
+        fs::write(path(name), bytes).unwrap();
+    }
+    // takes no place on the disk
+    fs::File::options().write(true).open(path("large.csv")).unwrap().set_len(3_000_000_000).unwrap();
+    fs::create_dir(path("folder.csv")).unwrap();
+    for (name, status, part) in [
+        ("empty.csv", 3, "empty.csv: is empty"),
+        ("rubbish.csv", 3, "rubbish.csv: is no text: it has the character U+00"),
+        ("nul.csv", 3, "nul.csv: is no text: it has the character U+0000"),
+        ("column.csv", 3, "column.csv: has one column of numbers"),
+        ("words.csv", 3, "words.csv: has no columns of numbers"),
+        ("large.csv", 3, "large.csv: has 3000000000 bytes; at most 2000000000 are read of a text"),
+        ("cut.001", 3, "cut.001: as ISO-MME: has 1 samples, its header states 9"),
+        ("nodout", 3, "nodout: as LS-DYNA nodout: line 3: node 5 has `x`, not numbers"),
+        ("folder.csv", 2, "folder.csv is no file; name a file with a record"),
+    ] {
+        let named = path(name);
+        let ended =
+            impactcheck(&["compare", "scaled-plate-r10", "--models", "B", "--measured", text(&named)]);
+        assert_eq!(ended.status, status, "{name}: {}", ended.error);
+        assert!(flat(&ended.error).contains(&flat(part)), "{name}: {}", ended.error);
+        assert!(ended.out.is_empty() && ended.error.lines().count() < 12, "{name}: {}", ended.error);
     }
 }

@@ -105,3 +105,92 @@ fn sweeps_and_uncertain_inputs_take_walls_and_leave_out_what_they_lack() {
     let said = run(folder.path(), &["uncertainty", "wall.toml", "--samples", "64"], 0);
     assert!(said.contains("outer_force_peak") && !said.contains("efficiency"), "{said}");
 }
+
+/// A history of model C with another modulus of the sphere.
+fn record(folder: &Path, scene: &str, modulus: &str) -> String {
+    let text = fs::read_to_string(folder.join(scene)).unwrap();
+    let other =
+        text.replacen("name        = \"", "name        = \"other-", 1).replacen("210 GPa", modulus, 1);
+    assert_ne!(text, other);
+    fs::write(folder.join("other.toml"), other).unwrap();
+    run(folder, &["reduced", "other.toml", "--history", "record.csv"], 0);
+    fs::read_to_string(folder.join("record.csv")).unwrap()
+}
+
+/// A record of the rebound from a wall shows the restitution; the page has it. What a wall does not have is refused by name, and so is
+/// energy out of nothing.
+#[test]
+fn records_of_a_rebound_show_the_restitution() {
+    let folder = starter();
+    let table = record(folder.path(), "wall.toml", "210 GPa");
+    let compare = ["compare", "wall.toml", "--measured", "record.csv", "--out", "report"];
+    let document = run(folder.path(), &[&["-q"], &compare[..], &["--json"]].concat(), 0);
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    let found = &document["measured"];
+    assert!((found["restitution"]["mean"].as_f64().unwrap() - 1.0).abs() < 1e-3, "{found}");
+    assert!(found["partners"][0]["restitution_difference"].as_f64().unwrap().abs() < 1e-3, "{found}");
+    assert!(found["efficiency"].is_null() && found["partners"][0]["efficiency_difference"].is_null());
+    let said = run(folder.path(), &compare, 0);
+    assert!(said.contains("Measured restitution: 100.00 %") && said.contains("restitution, %"), "{said}");
+    let page = fs::read_to_string(folder.path().join("report/wall-measured.html")).unwrap();
+    assert!(page.contains(">restitution<") && !page.contains("Efficiency in %"));
+    // there is no inner body to name
+    assert!(page.contains(">outer</text>") && !page.contains(">inner</text>"));
+    assert!(!page.contains("not determined"));
+
+    let inner = table.lines().enumerate();
+    let inner: String =
+        inner.map(|(k, row)| format!("{row},{}\n", if k == 0 { "inner_velocity" } else { "0" })).collect();
+    fs::write(folder.path().join("record.csv"), inner).unwrap();
+    let said = run(folder.path(), &compare, 3);
+    assert!(said.contains("`inner_velocity` is measured"), "{said}");
+
+    // a body that comes back with 1.2 times its speed
+    let mut rows = table.lines().map(|row| row.split(',').collect::<Vec<_>>());
+    let headings = rows.next().unwrap();
+    let [time, velocity] =
+        ["time", "outer_velocity"].map(|name| headings.iter().position(|other| *other == name).unwrap());
+    let rows: Vec<[f64; 2]> = rows.map(|row| [time, velocity].map(|k| row[k].parse().unwrap())).collect();
+    let end = rows.last().unwrap()[0];
+    let flight = |from: f64, v: f64| (0..300).map(move |k| [from + 1e-6 * f64::from(k), v]);
+    let fast = rows.iter().map(|[t, v]| [*t, -0.5 + 1.1 * (v + 0.5)]);
+    let all = flight(-300e-6, -0.5).chain(fast).chain(flight(end + 1e-6, 0.6));
+    let rows: String = all.map(|[t, v]| format!("{t},{v}\n")).collect();
+    fs::write(folder.path().join("record.csv"), format!("time,outer_velocity\n{rows}")).unwrap();
+    let said = run(folder.path(), &compare, 3);
+    assert!(said.contains("no impact gives energy") && said.contains("outer body has 144"), "{said}");
+}
+
+/// Two bodies have one contact; the inner one shows the efficiency.
+#[test]
+fn records_of_two_bodies_show_the_efficiency() {
+    let folder = starter();
+    let text = fs::read_to_string(folder.path().join("wall.toml")).unwrap();
+    let inner = "[inner]\nkind = \"sphere\"\nradius = \"8 mm\"\nmaterial = \"aluminium\"\n";
+    let wall = "[wall]                           # or [plate]; without both the outer body strikes [inner]\n\
+                material = \"aluminium\"           # or rigid = true\n";
+    assert!(text.contains(wall));
+    let text = text.replace(wall, inner).replace("\"wall\"", "\"two\"");
+    fs::write(folder.path().join("two.toml"), text).unwrap();
+    record(folder.path(), "two.toml", "210 GPa");
+    let compare = ["-q", "compare", "two.toml", "--measured", "record.csv", "--out", "report", "--json"];
+    let document = run(folder.path(), &compare, 0);
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    let found = &document["measured"];
+    let expected = document["models"][0]["efficiency"].as_f64().unwrap();
+    assert!((found["efficiency"]["mean"].as_f64().unwrap() - expected).abs() < 1e-3 * expected, "{found}");
+    assert!(found["restitution"].is_null(), "{found}");
+}
+
+/// The modulus of a sphere that strikes a wall, from its motion.
+#[test]
+fn inputs_of_an_impact_on_a_wall_are_calibrated() {
+    let folder = starter();
+    record(folder.path(), "wall.toml", "180 GPa");
+    let calibrate =
+        ["calibrate", "wall.toml", "--over", "materials.steel.youngs_modulus", "--measured", "record.csv"];
+    let document = run(folder.path(), &[&["-q"], &calibrate[..], &["--json"]].concat(), 0);
+    let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+    let value = document["inputs"][0]["value"].as_f64().unwrap();
+    assert!((value / 180e9 - 1.0).abs() < 0.02, "{document}");
+}

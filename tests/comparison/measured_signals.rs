@@ -12,8 +12,8 @@ use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::result::Outcome;
 use impactcheck::scene::{Model, Scene, resolve};
 
-fn determined(outcome: &Outcome) -> ContactEnds {
-    ContactEnds::of(&outcome.summary).unwrap()
+fn determined(outcome: &Outcome, setup: &PlateImpact) -> ContactEnds {
+    ContactEnds::of(&outcome.summary, &approach(setup)).unwrap()
 }
 
 fn scene(name: &str) -> (Scene, PlateImpact) {
@@ -82,7 +82,7 @@ fn record(truth: &Outcome, signals: &[&'static str], with: Disturbance) -> Recor
 
 fn aligned(record: &Record, outcome: &Outcome, setup: &PlateImpact, speed: Speed) -> AlignedRecord {
     let filtered = Filtered::new(&outcome.history, BANDWIDTH).unwrap();
-    align(record, &filtered, determined(outcome), &approach(setup), (BANDWIDTH, speed)).unwrap()
+    align(record, &filtered, determined(outcome, setup), &approach(setup), (BANDWIDTH, speed)).unwrap()
 }
 
 #[test]
@@ -188,8 +188,9 @@ fn one_signal_is_enough_and_missing_free_flight_is_reported() {
     };
     let late = part(&|t| t > 0.0);
     let filtered = Filtered::new(&truth.history, BANDWIDTH).unwrap();
-    let error = align(&late, &filtered, determined(&truth), &approach(&setup), (BANDWIDTH, Speed::Scene))
-        .unwrap_err();
+    let error =
+        align(&late, &filtered, determined(&truth, &setup), &approach(&setup), (BANDWIDTH, Speed::Scene))
+            .unwrap_err();
     assert_eq!(error.exit_status() as u8, 3);
     // 5 us of it, some fifty samples, are before the first touch, but the instrument smears the impact over all of them
     let said = error.to_string().replace('\u{2502}', " ").split_whitespace().collect::<Vec<_>>().join(" ");

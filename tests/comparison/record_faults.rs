@@ -22,8 +22,9 @@ impl Bench {
         let scene = Scene::read(resolve(name).unwrap()).unwrap();
         let truth = Reduced::new(&scene, Model::B, None).unwrap().run_with_history(1e-7).unwrap();
         let model = Filtered::new(&truth.history, BANDWIDTH).unwrap();
-        let ends = ContactEnds::of(&truth.summary).unwrap();
-        Bench { model, ends, approach: approach(scene.plate_impact().unwrap()), truth }
+        let approach = approach(scene.plate_impact().unwrap());
+        let ends = ContactEnds::of(&truth.summary, &approach).unwrap();
+        Bench { model, ends, approach, truth }
     }
 
     fn efficiency(&self) -> f64 {

@@ -8,14 +8,14 @@ pub use from_file::scene_of_body;
 pub use impactcheck_physics::kinds::general_impact::*;
 pub use set_up::announce_set_ups;
 
-use super::{ClosedForm, Feature, Form, Starter, Use};
+use super::{Approach, ClosedForm, Feature, Form, Starter, Use};
 use crate::error::Result;
 use crate::scene::{Model, Scene, Shape};
 use std::path::Path;
 
 impl super::Kind for Kind {
     fn serves(&self, purpose: Use) -> bool {
-        matches!(purpose, Use::Samples | Use::MeshFile)
+        matches!(purpose, Use::Records | Use::Samples | Use::MeshFile)
     }
 
     fn starter(&self) -> Starter {
@@ -58,6 +58,10 @@ impl super::Kind for Kind {
         scene.general_impact().is_ok_and(yields)
     }
 
+    fn approach(&self, scene: &Scene) -> Result<Approach> {
+        scene.general_impact().map(approach)
+    }
+
     fn objective(&self, scene: &Scene) -> &'static str {
         let has = |name: &str| scene.general_impact().is_ok_and(|setup| setup.has(name));
         if has("efficiency") { "efficiency" } else { "outer_restitution" }
@@ -65,6 +69,22 @@ impl super::Kind for Kind {
 
     fn starts_in_contact(&self, _: &Scene) -> bool {
         true
+    }
+}
+
+/// The bodies of `setup` before the impact.
+fn approach(setup: &GeneralImpact) -> Approach {
+    let outer = &setup.outer;
+    Approach {
+        outer_speed: outer.normal_speed(),
+        inner_velocity: setup.inner.as_ref().map_or(0.0, |inner| inner.speed),
+        outer_mass: outer.shape.mass(&outer.material),
+        inner_mass: setup.inner_mass(),
+        has_inner_contact: setup.inner.is_some() && setup.struck.is_some(),
+        // a wall is held, too
+        is_held: setup.struck.is_some() && setup.is_held() != Some(false),
+        outer_is_rigid: !outer.shape.is_mounted(),
+        inner_is_free: true,
     }
 }
 

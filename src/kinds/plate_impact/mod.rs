@@ -9,7 +9,7 @@ pub use impactcheck_physics::kinds::plate_impact::*;
 use super::{Approach, ClosedForm, Feature, Place, Starter, Use, Value};
 use crate::error::Result;
 use crate::result::Summary;
-use crate::scene::{Geometry, Scene, Shape};
+use crate::scene::{Edge, Geometry, Scene, Shape};
 
 impl super::Kind for Kind {
     fn serves(&self, purpose: Use) -> bool {
@@ -88,7 +88,10 @@ pub fn approach(setup: &PlateImpact) -> Approach {
     Approach {
         outer_speed: outer.speed,
         inner_velocity: inner.speed,
-        masses: [outer.shape.mass(&outer.material), inner.shape.mass(&inner.material)],
+        outer_mass: outer.shape.mass(&outer.material),
+        inner_mass: Some(inner.shape.mass(&inner.material)),
+        has_inner_contact: true,
+        is_held: setup.plate.edge != Edge::Free,
         outer_is_rigid: matches!(outer.shape, Shape::Sphere { .. } | Shape::Compact { .. }),
         inner_is_free: setup.fluid.is_none(),
     }

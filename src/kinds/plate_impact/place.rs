@@ -14,7 +14,9 @@ pub(super) fn place(setup: &PlateImpact, summary: &Summary) -> Option<Place> {
     let pressure = summary.contact_pressure.as_ref().filter(|_| setup.outer.is_centred())?;
     let patch = pressure.outer.contact_radius.max(pressure.inner.contact_radius);
     let contact = summary.value("outer_contact_end")? * summary.value("first_frequency")?;
-    let [outer, inner] = super::approach(setup).masses;
+    let [outer, inner] =
+        [(&setup.outer.shape, &setup.outer.material), (&setup.inner.shape, &setup.inner.material)]
+            .map(|(shape, material)| shape.mass(material));
     let film = setup.fluid.as_ref().filter(|fluid| fluid.squeeze_film);
     let stokes_number = film.map(|fluid| {
         let tip = setup.inner.shape.tip_radius();

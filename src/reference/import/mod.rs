@@ -1,13 +1,11 @@
 //! Results of other programs as stored references: read once from a file, checked as every reference is, kept with where
 //! they come from.
 
-mod calculix;
-
 use super::entry::{self, Origin, Stored};
 use super::record_source;
 use super::store::Installed;
 use super::{Resolution, Store, identity};
-use crate::columns::{Columns, Map, RecordSource, decoded};
+use crate::columns::{Columns, Map, RecordSource};
 use crate::external;
 use crate::kinds;
 use crate::result::{History, Outcome, Summary, Table};
@@ -43,7 +41,10 @@ pub fn read_import(scene: &Scene, file: &Path, map: Option<&Path>) -> Result<Imp
     let of_map = |reason| unusable(map.unwrap_or(file), reason);
     let mapping = Map::parse(map_text.as_deref().unwrap_or_default()).map_err(of_map)?;
     let stated = mapping.stated(kinds::of(scene).quantities()).map_err(of_map)?;
-    let source = source(file, &bytes, &mapping)?;
+    let source = record_source(file, &bytes, &mapping).map_err(|error| match error {
+        Error::Scene(reason) => Error::Reference(reason.to_string()),
+        other => other,
+    })?;
     let history = history(scene, &source, &mapping).map_err(|reason| unusable(file, reason))?;
     let outcome = outcome(scene, &mapping, stated, history);
     let provenance = json!({
@@ -71,20 +72,6 @@ impl Imported {
     /// [`Error::Io`] if it can't be written.
     pub fn install(&self, scene: &Scene, store: &Store) -> Result<Stored> {
         install(scene, store, &self.outcome, &self.provenance)
-    }
-}
-
-/// What a file of any of the forms known consists of.
-fn source<'b>(file: &Path, bytes: &'b [u8], mapping: &Map) -> Result<RecordSource<'b>> {
-    let unusable = |reason: String| Error::Reference(format!("{}: {reason}", file.display()));
-    let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let text = || decoded(bytes, mapping.table.encoding.as_deref()).map_err(unusable);
-    match ending.as_deref() {
-        Some("dat") => Ok(RecordSource::Text(calculix::dat(&text()?).map_err(unusable)?.into())),
-        Some("frd") => {
-            Ok(RecordSource::Text(calculix::frd(&text()?, &mapping.headings()).map_err(unusable)?.into()))
-        }
-        _ => record_source(file, bytes, mapping),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::format::model_name;
-use crate::measured::Measured;
+use crate::measured::{AlignedRecord, Measured};
 use crate::plot::colours::look;
 use crate::report::SceneReport;
 use crate::result::{Outcome, Summary};
@@ -76,7 +76,7 @@ pub(crate) fn measured_lines(measured: &Measured) -> Vec<Line> {
         class: "fig-measured".into(),
         dash: "none",
         width: 1.4,
-        efficiency: measured.records.first().and_then(|record| record.efficiency).unwrap_or(f64::NAN),
+        efficiency: measured.records.first().and_then(AlignedRecord::key).unwrap_or(f64::NAN),
         curves: measured.curves.clone(),
         bands: Vec::new(),
     };
@@ -91,7 +91,7 @@ pub(crate) fn measured_lines(measured: &Measured) -> Vec<Line> {
             class: if reference { "fig-reference" } else { look.class }.into(),
             dash: if reference { "none" } else { look.dash },
             width: if reference { 2.1 } else { 1.7 },
-            efficiency: comparator.efficiency.unwrap_or(f64::NAN),
+            efficiency: comparator.key().unwrap_or(f64::NAN),
             curves: comparator.filtered.clone(),
             bands: Vec::new(),
         }

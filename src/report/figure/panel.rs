@@ -136,9 +136,11 @@ pub(crate) fn panel(
     }
 }
 
+/// The name of curve number `k` at the first line that has it; nothing if none has.
 fn body_label(layout: &mut Layout, body: &str, k: usize) -> Markup {
     let zero = layout.plot.y(0.0);
-    let Some((_, reference)) = layout.drawn.first() else { return html! {} };
+    let mut drawn = layout.drawn.iter().filter(|(_, bodies)| !bodies[k].is_empty());
+    let Some((_, reference)) = drawn.next() else { return html! {} };
     let thin: Vec<_> = reference.iter().map(|line| thinned(line, 2.0)).collect();
     let others: Vec<_> = (0..thin.len()).filter(|j| *j != k).map(|j| thin[j].clone()).collect();
     // Where a curve is zero others may be as well; it is labelled elsewhere if there is an elsewhere.

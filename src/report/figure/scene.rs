@@ -6,6 +6,7 @@
 
 use crate::curves::CommonAxis;
 use crate::format::significant;
+use crate::measured::{Measured, REFERENCE};
 use crate::plot::svg::{Svg, Theme, text_width, x2};
 use crate::report::SceneReport;
 use crate::report::figure::geometry::{FigureGeometry, PanelOf};
@@ -61,13 +62,17 @@ fn scene_drawing(report: &SceneReport, geometry: &FigureGeometry, theme: Theme) 
     drawing(&title, geometry, kinds::of(report.scene).panels(), &lines, axis, theme)
 }
 
-/// The figure of the first measured record beside reference and models (Fig. 12): displacement and velocity of the
-/// bodies, filtered to the instrument's bandwidth. `None` if nothing was measured.
-pub fn measured_figure(report: &SceneReport, theme: Theme) -> Option<String> {
-    let measured = report.comparison.measured.as_ref()?;
-    let title = format!("{}: measurement, reduced models and finite-element reference", report.scene.name);
+/// The figure of the first measured record with reference and models (Fig. 12): displacement and velocity of the
+/// bodies of the scene called `scene`, filtered to the instrument's bandwidth.
+pub fn measured_figure(scene: &str, measured: &Measured, theme: Theme) -> String {
+    let has_reference = measured.partners.iter().any(|comparator| comparator.partner == REFERENCE);
+    let results =
+        if has_reference { ", reduced models and finite-element reference" } else { " and reduced models" };
     let lines = measured_lines(measured);
-    Some(drawing(&title, &FigureGeometry::PAGE, &MOTION, &lines, Some(measured.window), theme))
+    let [displacement, velocity] = MOTION;
+    let panels = [displacement, PanelOf { boxes: measured.key == "efficiency", ..velocity }];
+    let title = format!("{scene}: measurement{results}");
+    drawing(&title, &FigureGeometry::PAGE, &panels, &lines, Some(measured.window), theme)
 }
 
 fn drawing(

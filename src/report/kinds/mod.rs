@@ -6,15 +6,20 @@ mod seal_seat;
 
 pub use seal_seat::{Arrow, seat_picture};
 
+use crate::error::Result;
 use crate::kinds::{self, KINDS};
+use crate::measured::Measured;
 use crate::reference::Stored;
 use crate::report::figure::geometry::PanelOf;
 use crate::report::page::section::Section;
 use crate::report::summary_column::SummaryColumn;
-use crate::report::{Attachments, SceneReport, Theme, figure};
+use crate::report::{Attachments, SceneReport, Theme, efficiency_figure, figure, measured_figure};
 use crate::result::Summary;
 use crate::scene::Scene;
 use maud::{Markup, html};
+
+/// Pixels of the PNG per unit of the drawing: 760 units are 2280 px, 300 dpi at a width of 19 cm.
+const PNG_SCALE: f32 = 3.0;
 
 /// A drawing of a scene, a file of its own.
 pub(super) struct Drawing {
@@ -27,10 +32,34 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
+    /// Its files, for the scene called `scene`: names and contents.
+    ///
+    /// # Errors
+    /// Those of the picture.
+    pub(super) fn files(self, scene: &str) -> Result<[(String, Vec<u8>); 2]> {
+        let stem = format!("{scene}{}", self.ending);
+        let png = crate::plot::png(&self.svg, PNG_SCALE)?;
+        Ok([(format!("{stem}.png"), png), (format!("{stem}.svg"), self.svg.into_bytes())])
+    }
+
     /// The curves of model and reference.
     pub(super) fn curves(report: &SceneReport) -> Self {
         let caption = Some("Displacement, velocity and contact force");
         Drawing { ending: "", caption, svg: figure(report, Theme::Standalone) }
+    }
+
+    /// The measured motion, and the efficiencies of repeated impacts, if there are records.
+    pub(super) fn measured(report: &SceneReport) -> Vec<Self> {
+        let measured = report.comparison.measured.as_ref();
+        measured.map_or_else(Vec::new, |measured| Self::of_records(&report.comparison.scene, measured))
+    }
+
+    /// The same of the scene called `scene`.
+    pub(super) fn of_records(scene: &str, measured: &Measured) -> Vec<Self> {
+        let drawing = |ending, svg| Drawing { ending, caption: None, svg };
+        let motion = drawing("-measured", measured_figure(scene, measured, Theme::Standalone));
+        let efficiencies = efficiency_figure(scene, measured).map(|svg| drawing("-efficiencies", svg));
+        std::iter::once(motion).chain(efficiencies).collect()
     }
 }
 

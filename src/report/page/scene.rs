@@ -49,7 +49,14 @@ fn all_sections(report: &SceneReport) -> Vec<Section> {
     let shown = kinds::of(report.scene);
     let mut all = vec![
         Section::new("discrepancies", "Differences", discrepancy_picture::discrepancy_picture(comparison)),
-        Section::new("measurement", "Measurement", section::measured::measured_html(report)),
+        Section::new(
+            "measurement",
+            "Measurement",
+            comparison.measured.as_ref().map_or_else(
+                || html! {},
+                |measured| section::measured::measured_html(&comparison.scene, measured),
+            ),
+        ),
         Section::new("over-time", "Curves", curves(report)),
         Section::new("validation", "Uncertain inputs", section::validation::validation_html(comparison)),
     ];

@@ -3,7 +3,7 @@
 mod body;
 mod picture;
 
-use super::Presentation;
+use super::{Drawing, Presentation};
 use crate::reference::Stored;
 use crate::report::SceneReport;
 use crate::report::attachments::{Attachments, instant_of_peak};
@@ -52,6 +52,10 @@ impl Presentation for Direct {
     fn attachments(&self, stored: &Stored) -> Attachments {
         let peak = instant_of_peak(&stored.outcome.history, "outer_force");
         Attachments { solid_stress: stored.solid_stress_near(peak).ok().flatten(), ..Attachments::default() }
+    }
+
+    fn drawings(&self, report: &SceneReport) -> Vec<Drawing> {
+        std::iter::once(Drawing::curves(report)).chain(Drawing::measured(report)).collect()
     }
 
     fn scene_drawing(&self, report: &SceneReport) -> Markup {

@@ -8,7 +8,7 @@ use crate::report::attachments::instant_of_peak;
 use crate::report::figure::geometry::PanelOf;
 use crate::report::page::section::{self, Section};
 use crate::report::summary_column::SummaryColumn;
-use crate::report::{Attachments, SceneReport, Theme, efficiency_figure, measured_figure};
+use crate::report::{Attachments, SceneReport};
 use crate::scene::Scene;
 use maud::{Markup, html};
 
@@ -72,17 +72,11 @@ impl Presentation for Plate {
 
     fn drawings(&self, report: &SceneReport) -> Vec<Drawing> {
         let drawing = |ending, caption, svg| Drawing { ending, caption, svg };
-        let measured = measured_figure(report, Theme::Standalone);
-        let efficiencies = efficiency_figure(report);
-        let measured = measured.map(|svg| drawing("-measured", None, svg));
-        let efficiencies = efficiencies.map(|svg| drawing("-efficiencies", None, svg));
         let impacts = section::impacts::impacts_figure(report)
             .map(|svg| drawing("-impacts", Some("Efficiency over the number of the impact"), svg));
         let dents = section::dents::dents_figure(report).map(|svg| drawing("-dents", None, svg));
-        [Some(Drawing::curves(report)), impacts, dents, measured, efficiencies]
-            .into_iter()
-            .flatten()
-            .collect()
+        let own = [Some(Drawing::curves(report)), impacts, dents].into_iter().flatten();
+        own.chain(Drawing::measured(report)).collect()
     }
 
     fn scene_drawing(&self, report: &SceneReport) -> Markup {

@@ -13,15 +13,13 @@ use maud::{Markup, PreEscaped, html};
 type Rows = Vec<Vec<String>>;
 
 /// The efficiencies of repeated impacts over their number (Fig. 13), with their mean and scatter as a band and the models as
-/// lines, as a stand-alone SVG. `None` for fewer than two records.
-pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
-    let measured = report.comparison.measured.as_ref()?;
+/// lines, as a stand-alone SVG; without an inner body the restitutions. `None` for fewer than two records.
+pub fn efficiency_figure(scene: &str, measured: &Measured) -> Option<String> {
     if measured.records.len() < 2 {
         return None;
     }
     let impacts = measured.records.iter().enumerate();
-    let points =
-        impacts.filter_map(|(k, record)| Some((k as f64 + 1.0, 100.0 * record.efficiency?))).collect();
+    let points = impacts.filter_map(|(k, record)| Some((k as f64 + 1.0, 100.0 * record.key()?))).collect();
     let last = measured.records.len() as f64;
     let level = |comparator: &MeasuredComparison| Series {
         name: if comparator.partner == "reference" {
@@ -29,9 +27,7 @@ pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
         } else {
             format!("model {}", comparator.partner)
         },
-        points: comparator
-            .efficiency
-            .map_or_else(Vec::new, |own| vec![(1.0, 100.0 * own), (last, 100.0 * own)]),
+        points: comparator.key().map_or_else(Vec::new, |own| vec![(1.0, 100.0 * own), (last, 100.0 * own)]),
         ..Series::default()
     };
     let series = measured.partners.iter().map(level).chain([Series {
@@ -40,17 +36,26 @@ pub fn efficiency_figure(report: &SceneReport) -> Option<String> {
         marks: true,
         ..Series::default()
     }]);
-    let band =
-        measured.efficiency.as_ref().and_then(|e| Some((100.0 * e.mean, 100.0 * e.standard_deviation?)));
+    let band = measured.key_series().and_then(|e| Some((100.0 * e.mean, 100.0 * e.standard_deviation?)));
     let panel = ChartPanel {
         x_label: "Number of the impact".into(),
-        y_label: "Efficiency in %".into(),
+        y_label: format!("{} in %", capitalised(key_in_words(measured))),
         series: series.collect(),
         counted: true,
         band,
         ..ChartPanel::default()
     };
-    Some(chart(&format!("{}: efficiency of repeated impacts", report.scene.name), &[panel]))
+    Some(chart(&format!("{scene}: {} of repeated impacts", key_in_words(measured)), &[panel]))
+}
+
+/// What the quantity is called that records show as one number.
+pub(crate) fn key_in_words(measured: &Measured) -> &'static str {
+    if measured.key == "efficiency" { "efficiency" } else { "restitution" }
+}
+
+fn capitalised(text: &str) -> String {
+    let (first, rest) = text.split_at(1);
+    first.to_uppercase() + rest
 }
 
 /// Most points of a curve that is drawn.
@@ -120,8 +125,8 @@ fn per_second(unit: &str) -> String {
 }
 
 fn alignment(measured: &Measured) -> Rows {
-    let heading =
-        ["record", "samples", "first contact at", "offset and drift", "efficiency", "uncertainty (95 %)"];
+    let key = key_in_words(measured);
+    let heading = ["record", "samples", "first contact at", "offset and drift", key, "uncertainty (95 %)"];
     let row = |record: &AlignedRecord| {
         let corrections: Vec<String> = record
             .channels
@@ -146,26 +151,25 @@ fn alignment(measured: &Measured) -> Rows {
             record.samples.to_string(),
             microseconds(record.shift),
             corrections.join("; "),
-            percent(record.efficiency, 4),
-            percent(record.efficiency_uncertainty, 2),
+            percent(record.key(), 4),
+            percent(record.key_uncertainty(), 2),
         ]
     };
     std::iter::once(heading.map(str::to_owned).into()).chain(measured.records.iter().map(row)).collect()
 }
 
 fn metrics(measured: &Measured) -> Rows {
-    let heading = ["result", "efficiency", "difference", "curve", "Sprague-Geers", "Russell", "ISO/TS 18571"];
+    let heading =
+        ["result", key_in_words(measured), "difference", "curve", "Sprague-Geers", "Russell", "ISO/TS 18571"];
     let score = |value: Option<f64>| value.map_or("–".into(), |v| significant(v, 3));
     let mut rows: Rows = vec![heading.map(str::to_owned).into()];
     for comparator in &measured.partners {
         for curve in &comparator.curves {
             rows.push(vec![
                 comparator.partner.clone(),
+                comparator.key().map_or("–".into(), |own| format!("{} %", significant(100.0 * own, 4))),
                 comparator
-                    .efficiency
-                    .map_or("–".into(), |own| format!("{} %", significant(100.0 * own, 4))),
-                comparator
-                    .efficiency_difference
+                    .key_difference()
                     .map_or("–".into(), |d| format!("{} percentage points", significant(100.0 * d, 3))),
                 words(&curve.quantity),
                 score(curve.sprague_geers),
@@ -203,23 +207,28 @@ fn validation(measured: &Measured) -> Option<Rows> {
 }
 
 /// What the columns of [`validation`] are.
-const VALIDATION: &str = "E is the computed efficiency minus the mean of the measured ones. Inputs without a stated uncertainty count as exact.     u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009). Area: between the distribution of the computed efficiency and that of the measured ones     (Ferson, Oberkampf & Ginzburg 2008), and its parts where the computed one is larger and smaller.";
+const VALIDATION: &str = "E is the computed value minus the mean of the measured ones. Inputs without a stated uncertainty count as exact.     u_val² = u_num² + u_input² + u_D² (ASME V&V 20-2009). Area: between the distribution of the computed value and that of the measured ones     (Ferson, Oberkampf & Ginzburg 2008), and its parts where the computed one is larger and smaller.";
 
 /// Mean and scatter in a sentence.
 pub(crate) fn sentence(measured: &Measured) -> String {
-    let Some(series) = &measured.efficiency else {
-        return "No record shows the inner body's free flight: there is no measured efficiency.".into();
+    let key = key_in_words(measured);
+    let Some(series) = measured.key_series() else {
+        return match key {
+            "efficiency" => "No record shows the inner body's free flight: there is no measured efficiency.",
+            _ => "No record shows the rebound from a body that is held: there is no measured restitution.",
+        }
+        .into();
     };
     let mean = significant(100.0 * series.mean, 4);
     match series.standard_deviation {
         Some(deviation) => {
             let deviation = significant(100.0 * deviation, 2);
             format!(
-                "Measured efficiency of {} impacts: mean {mean} %, standard deviation {deviation} percentage points.",
+                "Measured {key} of {} impacts: mean {mean} %, standard deviation {deviation} percentage points.",
                 series.count
             )
         }
-        None => format!("Measured efficiency: {mean} %."),
+        None => format!("Measured {key}: {mean} %."),
     }
 }
 
@@ -229,9 +238,8 @@ fn bandwidth(measured: &Measured) -> String {
     format!("The curves of reference and models are filtered to {shown} (zero phase); the records are not.")
 }
 
-/// The section of a scene's page.
-pub(crate) fn measured_html(report: &SceneReport) -> Markup {
-    let Some(measured) = &report.comparison.measured else { return html! {} };
+/// The section of the page of the scene called `scene`.
+pub(crate) fn measured_html(scene: &str, measured: &Measured) -> Markup {
     let table = |rows: Rows| {
         let mut rows = rows.into_iter();
         let heading = rows.next().unwrap_or_default();
@@ -246,15 +254,13 @@ pub(crate) fn measured_html(report: &SceneReport) -> Markup {
         p { (sentence(measured)) }
         @for (record, effect) in effects(measured) { p { strong { "Warning, " (record) ": " } (prose(effect)) } }
         figure {
-            @if let Some(drawing) = measured_figure(report, Theme::Inline) {
-                (detailed("Measured and computed motion", &PreEscaped(drawing)))
-            }
+            (detailed("Measured and computed motion", &PreEscaped(measured_figure(scene, measured, Theme::Inline))))
             figcaption {
-                "The first record with reference and models. " (bandwidth(measured)) " "
-                a href=(format!("{}-measured.svg", report.comparison.scene)) { "SVG" } " · "
-                a href=(format!("{}-measured.png", report.comparison.scene)) { "PNG" }
+                "The first record with the results that it is compared with. " (bandwidth(measured)) " "
+                a href=(format!("{scene}-measured.svg")) { "SVG" } " · "
+                a href=(format!("{scene}-measured.png")) { "PNG" }
                 @if measured.records.len() > 1 {
-                    " · " a href=(format!("{}-efficiencies.svg", report.comparison.scene)) { "efficiencies" }
+                    " · " a href=(format!("{scene}-efficiencies.svg")) { (key_in_words(measured)) " of each" }
                 }
             }
         }

@@ -101,11 +101,12 @@ pub(crate) fn validation_text(comparison: &SceneComparison) -> String {
             .map(|(row, of)| format!("  {}: {}\n", model.model, line(&row.quantity, of)))
             .collect::<String>()
     };
-    let measured = comparison.measured.iter().flat_map(|measured| &measured.partners);
-    let of_comparators = measured.filter_map(|comparator| {
+    let measured = comparison.measured.iter();
+    let comparators = measured.flat_map(|measured| measured.partners.iter().map(|one| (measured.key, one)));
+    let of_comparators = comparators.filter_map(|(key, comparator)| {
         // without uncertain inputs the table of the measurement says all
         let of = comparator.validation.as_ref().filter(|of| !of.parts.inputs.is_empty())?;
-        Some(format!("  {} against the measurement: {}\n", comparator.partner, line("efficiency", of)))
+        Some(format!("  {} against the measurement: {}\n", comparator.partner, line(key, of)))
     });
     comparison.models.iter().map(of_model).chain(of_comparators).collect()
 }

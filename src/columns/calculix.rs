@@ -3,9 +3,17 @@
 //! G. Dhondt, "CalculiX CrunchiX user's manual": \*NODE PRINT writes blocks `displacements (vx,vy,vz) for set N and time T`
 //! with a node and its values per line, \*NODE FILE blocks of nodal values in fixed columns.
 
-use crate::columns;
+use super::rows::{number as value_of, packed};
 use std::collections::BTreeMap;
 use std::fmt::Write;
+
+/// Lines in which the first block begins of what CalculiX prints.
+const HEAD: usize = 20;
+
+/// Whether `text` is what CalculiX prints: other programs name tables of numbers `.dat`, too.
+pub(super) fn is_dat(text: &str) -> bool {
+    text.lines().take(HEAD).any(|line| line.contains(" set ") && line.contains(" and time "))
+}
 
 /// Values by heading at every time.
 #[derive(Default)]
@@ -85,7 +93,7 @@ impl<'t> PrintedBlock<'t> {
             let (sets, time) = statistics.split_once(" and time")?;
             let sets = sets.split(',').filter_map(|set| set.split_once(" set "));
             let names: Vec<&str> = sets.map(|(_, name)| name.trim()).collect();
-            *pair = Some((names.join(" "), columns::number(time.trim())?));
+            *pair = Some((names.join(" "), value_of(time.trim())?));
             return None;
         }
         let (name, components, rest) = heading(line)?;
@@ -94,12 +102,12 @@ impl<'t> PrintedBlock<'t> {
             return Some(PrintedBlock::new(name, components, set, time));
         }
         let (set, time) = rest.strip_prefix("for set ")?.split_once(" and time")?;
-        Some(PrintedBlock::new(name, components, set.trim().to_owned(), columns::number(time.trim())?))
+        Some(PrintedBlock::new(name, components, set.trim().to_owned(), value_of(time.trim())?))
     }
 
     /// Adds a row: the numbers of nodes or elements, and one value of each component. A row of a contact pair goes on with its moments.
     fn add(&mut self, line: &str) -> Option<()> {
-        let values: Vec<f64> = line.split_whitespace().map(columns::number).collect::<Option<_>>()?;
+        let values: Vec<f64> = line.split_whitespace().map(value_of).collect::<Option<_>>()?;
         let count = self.components.len();
         let own = match values.len() {
             n if n == count || n == count + 1 => &values[n - count..],
@@ -154,7 +162,7 @@ pub(super) fn frd(text: &str, requested: &[&str]) -> Result<String, String> {
             || format!("line {}: `{}` is no line of a .frd file in text form", number + 1, line.trim_end());
         match line.get(..5).map(str::trim) {
             Some("100C") | Some("100") => {
-                time = part(line, 12, 12).and_then(columns::number).ok_or_else(fault)?;
+                time = part(line, 12, 12).and_then(value_of).ok_or_else(fault)?;
                 field.clear();
             }
             Some("-4") => {
@@ -196,23 +204,6 @@ pub(super) fn frd(text: &str, requested: &[&str]) -> Result<String, String> {
 /// Most values in a line of a `.frd` file.
 const PER_LINE: usize = 6;
 
-/// The values that C's `%12.5E` wrote one after another. Some systems write three digits of an exponent, and then a negative value
-/// is wider than its column; but every value has one digit before its point.
-fn packed(text: &str) -> Option<Vec<f64>> {
-    let text = text.is_ascii().then(|| text.trim_end())?;
-    let is_minus = |at: usize| text.as_bytes()[at] == b'-';
-    let begins = |point: usize| {
-        let digit = point.checked_sub(1)?;
-        let minus = digit.checked_sub(1).filter(|at| is_minus(*at));
-        Some(minus.unwrap_or(digit))
-    };
-    let mut begins: Vec<usize> =
-        text.match_indices('.').map(|(point, _)| begins(point)).collect::<Option<_>>()?;
-    begins.push(text.len());
-    let values = begins.windows(2).map(|pair| columns::number(text[pair[0]..pair[1]].trim_end()));
-    text[..begins[0]].trim().is_empty().then(|| values.collect())?
-}
-
 /// The text in `width` columns of a line from `start`.
 fn part(line: &str, start: usize, width: usize) -> Option<&str> {
     line.get(start..(start + width).min(line.len())).map(str::trim)
@@ -223,8 +214,8 @@ mod tests {
     use super::{dat, frd, packed};
 
     // three steps of a cube on its base whose top moves downwards, as CalculiX 2.20 writes them
-    const DAT: &str = include_str!("../../../tests/fixtures/calculix-box.dat");
-    const FRD: &str = include_str!("../../../tests/fixtures/calculix-box.frd");
+    const DAT: &str = include_str!("../../tests/fixtures/calculix-box.dat");
+    const FRD: &str = include_str!("../../tests/fixtures/calculix-box.frd");
 
     #[test]
     fn what_is_printed_becomes_columns_with_means_over_their_sets() {
