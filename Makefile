@@ -115,6 +115,9 @@ evidence: setup wheel
 	$(PYTHON) -m fem_reference body-bands --random 8 --out $(OUT)/bands
 	$(PYTHON) -m fem_reference yielding --out reports/yielding.md
 	$(PYTHON) -m fem_reference rebound --out reports/rebound.md
+	# a random tenth of the scenes that predictions rest on
+	$(TOOL) validation/draw.py $(OUT)/validation/scenes
+	IMPACTCHECK_PYTHON=$(PYTHON) $(TOOL) validation/check.py $(OUT)/validation/scenes validation/base.jsonl
 	# flights of the sphere by another program
 	$(TOOL) -m fem_reference flights --out fem_reference/solutions/flights.json
 	for scene in $(PLATES); do $(PYTHON) -m fem_reference cost --out reports/reference-cost-$$scene.json \

@@ -123,7 +123,8 @@ def solve(path: Path, program: Path) -> Row:
             "refused": " ".join(told.replace("\u2502", " ").split()),
             "status": ran.returncode,
         }
-    return found | {"seconds": round(time.monotonic() - begun, 1)}
+    file = tomllib.loads(path.read_text(encoding="utf-8"))
+    return found | {"seconds": round(time.monotonic() - begun, 1), "file": file}
 
 
 def _shard(text: str) -> tuple[int, int]:
@@ -150,7 +151,7 @@ def main() -> None:
         if not target.exists():
             found = solve(path, given.program)
             partial = target.with_suffix(".partial")
-            partial.write_text(json.dumps(found | {"file": tomllib.loads(path.read_text())}))
+            partial.write_text(json.dumps(found))
             shutil.move(partial, target)
             outcome = found.get("refused", f"{found.get('dofs')} unknowns")
             print(f"{path.stem}: {found['seconds']} s, {outcome}", file=sys.stderr, flush=True)

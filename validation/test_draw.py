@@ -11,6 +11,7 @@ import pytest
 from fem_reference.common.hertz import hertz_approach, hertz_contact_radius, hertz_stiffness
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+from check import moved
 from draw import DRAWN, ELEMENTS, STEEPEST, scenes
 
 
@@ -40,3 +41,23 @@ def test_patches_and_contact_times_are_those_drawn() -> None:
         assert scene["reference"]["elements_per_contact_radius"] == ELEMENTS
     assert 0.0 < min(patches) < 0.02 and 0.4 < max(patches) <= 0.6 * (1.0 + 1e-6)
     assert max(times) / min(times) > 100.0
+
+
+def test_what_moves_by_more_than_a_twentieth_of_its_band_is_told() -> None:
+    """Of the reference and of the models; and a scene that is refused now."""
+    before = {
+        "scene": "dry-000",
+        "extrapolated": {"efficiency": 0.5},
+        "bands": {"efficiency": 0.01},
+        "models": {"C": {"efficiency": 0.501, "inner_force_peak": None}},
+    }
+    assert moved(before, before) == []
+    for side in ("extrapolated", "models"):
+        for change, told in ((4e-4, 0), (6e-4, 1)):
+            after = {**before, "extrapolated": {"efficiency": 0.5}}
+            if side == "extrapolated":
+                after["extrapolated"] = {"efficiency": 0.5 + change}
+            else:
+                after["models"] = {"C": {"efficiency": 0.501 - change, "inner_force_peak": None}}
+            assert len(moved(before, after)) == told
+    assert moved(before, {"scene": "dry-000", "refused": "why"}) == ["dry-000: solved -> why"]

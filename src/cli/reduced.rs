@@ -48,11 +48,14 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         let curves = arguments.history.is_some() || arguments.page.is_some();
         kinds::of(&scene).reduced(context, &scene, &arguments.request, &SharedBodies::default(), curves)
     })?;
+    let prediction = predicted(context, &scene, &arguments.request, &outcome.summary);
+    if let Err(reason) = &prediction {
+        context.detail(format_args!("no 95 % intervals: {reason}"));
+    }
     if let Some(file) = &arguments.page {
-        write_file(file, report::model_page(&scene, &outcome).as_bytes())?;
+        write_file(file, report::model_page(&scene, &outcome, &prediction).as_bytes())?;
         context.note(format_args!("page in {}", file.display()));
     }
-    let prediction = predicted(context, &scene, &arguments.request, &outcome.summary);
     finish(context, arguments, (&scene, &outcome), &prediction)
 }
 
@@ -102,25 +105,22 @@ fn finish(
         prediction_reason: prediction.as_ref().err(),
     };
     arguments.json.print(&document, |document| {
-        let results = table(document.summary, |name| kinds_of(scene).has(scene, name));
-        format!("{results}\n{}", predicted_lines(prediction, summary))
+        let mut lines = vec![table(document.summary, |name| kinds_of(scene).has(scene, name))];
+        lines.extend(document.prediction.map(|intervals| predicted_lines(intervals, summary)));
+        lines.join("\n")
     })?;
     Ok(ExitStatus::Pass)
 }
 
-/// The intervals as lines of name, bounds and unit; or why there are none.
-fn predicted_lines(prediction: &Prediction, summary: &Summary) -> String {
-    let intervals = match prediction {
-        Err(reason) => return format!("  no 95 % intervals for a reference: {reason}"),
-        Ok(intervals) => intervals,
-    };
+/// The intervals as lines of name, bounds and unit.
+fn predicted_lines(intervals: &BTreeMap<&'static str, Interval>, summary: &Summary) -> String {
     let mut lines = Vec::new();
     for Quantity { name, unit, .. } in summary.quantities.iter() {
         let Some(Interval { low, high, level, scenes, stratum }) = intervals.get(name) else { continue };
         if lines.is_empty() {
             let level = 100.0 * level;
             lines.push(format!(
-                "  a reference would say ({level:.0} %, from {scenes} similar scenes of the group `{stratum}`)"
+                "  a reference would find ({level:.0} %, from {scenes} solved scenes of the group `{stratum}`)"
             ));
         }
         let to = prefixed(unit, low.abs().max(high.abs()));

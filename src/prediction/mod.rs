@@ -17,6 +17,10 @@ use std::collections::BTreeMap;
 
 /// Share of intervals that hold the reference's value.
 pub const LEVEL: f64 = 0.95;
+/// Fewest scenes that intervals come from.
+pub const FEWEST: usize = 30;
+/// Efficiency, and force over that of the other contact, below which a part of an impact is negligible: as the bands of references have it.
+const MINOR: f64 = 0.05;
 /// Quantities with intervals.
 pub const QUANTITIES: [&str; 8] = [
     "efficiency",
@@ -65,13 +69,22 @@ pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
     for quantity in QUANTITIES {
         let Some(value) = continuum.value(quantity) else { continue };
         let cases = cases(&others, quantity);
-        let Some(calibrated) = Calibrated::new(&cases, LEVEL) else { continue };
-        let half = calibrated.half_width(&coordinates(&place)) * scale(quantity, value, speed);
-        let (low, high, scenes) = (value - half, value + half, cases.len());
+        let Some(calibrated) = Calibrated::new(&cases, LEVEL).filter(|_| cases.len() >= FEWEST) else {
+            continue;
+        };
+        let scale = scale(quantity, |name| continuum.value(name), speed).unwrap_or(0.0);
+        let half = calibrated.half_width(&coordinates(&place)) * scale;
+        // what cannot be negative is not
+        let least =
+            if value >= 0.0 && !quantity.ends_with("_velocity_final") { 0.0 } else { f64::NEG_INFINITY };
+        let (low, high, scenes) = ((value - half).max(least), value + half, cases.len());
         found.insert(quantity, Interval { low, high, level: LEVEL, scenes, stratum });
     }
     match found.is_empty() {
-        true => Err(format!("the validation base has only {} scenes of the group `{stratum}`", others.len())),
+        true => Err(format!(
+            "the validation base has {} scenes of the group `{stratum}`; {FEWEST} are needed",
+            others.len()
+        )),
         false => Ok(found),
     }
 }
@@ -80,7 +93,8 @@ pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
 pub fn cases(scenes: &[&Solved], quantity: &str) -> Vec<Case> {
     let case = |scene: &&Solved| {
         let [model, reference] = scene.values(quantity)?;
-        let error = (model - reference).abs() / scale(quantity, model, scene.speed);
+        let of_model = |name: &str| scene.values(name).map(|[model, _]| model);
+        let error = (model - reference).abs() / scale(quantity, of_model, scene.speed)?;
         Some(Case { place: coordinates(&scene.place?), error }).filter(|case| case.error.is_finite())
     };
     scenes.iter().filter_map(case).collect()
@@ -91,9 +105,16 @@ pub fn coordinates(place: &Place) -> Vec<f64> {
     place.measures().into_iter().chain(place.stokes_number).map(f64::ln).collect()
 }
 
-/// What the error of a quantity with this `value` is relative to: the value, of a velocity the `speed` of the impact in m/s.
-pub fn scale(quantity: &str, value: f64, speed: f64) -> f64 {
-    if quantity.ends_with("_velocity_final") { speed } else { value.abs() }
+/// What the error of a quantity is relative to, by the values of a result and the `speed` of its impact in m/s: the quantity itself;
+/// of a velocity the speed; of an efficiency and a force that are negligible what is not.
+pub fn scale(quantity: &str, value: impl Fn(&str) -> Option<f64>, speed: f64) -> Option<f64> {
+    let own = value(quantity)?.abs();
+    Some(match quantity {
+        "efficiency" => own.max(MINOR),
+        "inner_force_peak" => own.max(MINOR * value("outer_force_peak")?),
+        _ if quantity.ends_with("_velocity_final") => speed,
+        _ => own,
+    })
 }
 
 /// Whether numbers lie within those of `others`.

@@ -10,6 +10,7 @@ mod gate_updates;
 mod gate_verdicts;
 mod harness;
 mod measured_signals;
+mod prediction;
 mod range_of_validity;
 mod record_faults;
 mod validated;

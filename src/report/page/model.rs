@@ -3,6 +3,7 @@
 use crate::format::{model_name, prefixed, with_unit};
 use crate::kinds::of as kind_of;
 use crate::plot::{ChartPanel, chart};
+use crate::prediction::{Interval, Prediction};
 use crate::report::figure::curves::curves_chart;
 use crate::report::kinds;
 use crate::report::page::facts::facts;
@@ -24,8 +25,8 @@ pub fn body_page(scene: &Scene) -> String {
     page(&format!("{title} · impactcheck"), &[], &body, &html! {})
 }
 
-/// The page of the model of `scene` that has the `outcome`.
-pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
+/// The page of the model of `scene` that has the `outcome`, with what a reference would find.
+pub fn model_page(scene: &Scene, outcome: &Outcome, prediction: &Prediction) -> String {
     let Outcome { summary, history } = outcome;
     let model = format!("model {}", model_name(summary.model.as_deref().unwrap_or("?"), summary.modes));
     let title = format!("{}: {model}", scene.name);
@@ -36,7 +37,14 @@ pub fn model_page(scene: &Scene, outcome: &Outcome) -> String {
         p.soft { (scene.description) }
         p.note { "Reduced model without a reference." }
         @if !summary.warnings.is_empty() { ul { @for warning in &summary.warnings { li { (warning) } } } }
-        (scrolled("Results", &quantities(scene, summary)))
+        (scrolled("Results", &quantities(scene, summary, prediction)))
+        @match prediction {
+            Ok(intervals) => @if let Some(any) = intervals.values().next() {
+                p.note { "With a probability of 95 % a finite-element reference would lie in the interval. It comes from the errors of "
+                    "model C in " (any.scenes) " solved scenes of the group “" (any.stratum) "”." }
+            },
+            Err(reason) => p.note { "There is no interval of what a reference would find: " (reason) "." },
+        }
         @for line in estimates(summary) { p { (line) } }
         @if !shown.0.is_empty() { h2 { "The body" } (shown) }
         h2 { "Curves" }
@@ -62,15 +70,26 @@ fn estimates(summary: &Summary) -> Vec<String> {
     errors.into_iter().chain(frequencies).collect()
 }
 
-fn quantities(scene: &Scene, summary: &Summary) -> Markup {
+fn quantities(scene: &Scene, summary: &Summary, prediction: &Prediction) -> Markup {
     let own = || summary.quantities.iter().filter(|quantity| kind_of(scene).has(scene, quantity.name));
     let shown = |value: Option<f64>, unit| {
         value.map_or_else(|| "not determined".to_owned(), |value| with_unit(value, prefixed(unit, value), 5))
     };
-    html! { table { tbody { @for quantity in own() { tr {
-        th scope="row" { (named(quantity.name)) }
-        td { (shown(quantity.value, quantity.unit)) }
-    } } } } }
+    let found = prediction.as_ref().ok();
+    let interval = |Interval { low, high, .. }: &Interval, unit| {
+        let to = prefixed(unit, low.abs().max(high.abs()));
+        format!("{} to {}", with_unit(*low, to, 4), with_unit(*high, to, 4))
+    };
+    html! { table {
+        @if found.is_some() { thead { tr { th {} th { "model" } th { "a reference would find (95 %)" } } } }
+        tbody { @for quantity in own() { tr {
+            th scope="row" { (named(quantity.name)) }
+            td { (shown(quantity.value, quantity.unit)) }
+            @if let Some(intervals) = found {
+                td { @if let Some(one) = intervals.get(quantity.name) { (interval(one, quantity.unit)) } }
+            }
+        } } }
+    } }
 }
 
 fn curves(title: &str, history: &History) -> String {

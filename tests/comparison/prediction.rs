@@ -1,0 +1,125 @@
+//! Prediction intervals against references that they were not made from.
+
+use impactcheck::kinds::plate_impact::reduced::Reduced;
+use impactcheck::prediction::{
+    Calibrated, FEWEST, LEVEL, QUANTITIES, Solved, cases, coordinates, predict, scale, solved,
+};
+use impactcheck::report::model_page;
+use impactcheck::scene::{Model, Scene, resolve};
+use impactcheck::validated::shipped;
+use std::collections::BTreeSet;
+
+/// Whether `within` of `count` is what the level lets expect, in all but one case of a thousand.
+fn is_expected(within: usize, count: usize) -> bool {
+    let n = count as f64;
+    (within as f64 - LEVEL * n).abs() <= 3.3 * (n * LEVEL * (1.0 - LEVEL)).sqrt() + 1.0
+}
+
+/// One half of each group calibrates, the other one is predicted, and the other way round.
+#[test]
+fn intervals_from_one_half_of_the_base_hold_the_other_half() {
+    let strata: BTreeSet<&str> = solved().iter().map(|scene| scene.stratum.as_str()).collect();
+    let mut judged = 0;
+    for stratum in strata {
+        let all: Vec<&Solved> = solved().iter().filter(|scene| scene.stratum == stratum).collect();
+        if all.len() < 2 * FEWEST {
+            continue;
+        }
+        let halves = [0, 1].map(|half| {
+            all.iter().enumerate().filter(|(k, _)| k % 2 == half).map(|(_, s)| *s).collect::<Vec<&Solved>>()
+        });
+        for quantity in QUANTITIES {
+            let (mut within, mut count) = (0, 0);
+            for half in 0..2 {
+                let known = cases(&halves[half], quantity);
+                let Some(calibrated) = Calibrated::new(&known, LEVEL) else { continue };
+                for case in cases(&halves[1 - half], quantity) {
+                    within += usize::from(case.error <= calibrated.half_width(&case.place));
+                    count += 1;
+                }
+            }
+            assert!(is_expected(within, count), "{stratum}, {quantity}: {within} of {count}");
+            judged += 1;
+        }
+    }
+    assert!(judged >= QUANTITIES.len());
+}
+
+/// Scenes that were chosen by hand, solved on finer meshes than those of the base: their references lie within, but for their bands.
+#[test]
+fn intervals_hold_the_references_of_the_validation_scenes() {
+    let (mut within, mut count, mut missed) = (0, 0, Vec::new());
+    for known in
+        shipped().unwrap().iter().filter(|known| known.model == "C" && known.partner == "axisymmetric")
+    {
+        let Ok(file) = resolve(&known.scene) else { continue };
+        let scene = Scene::read(file).unwrap();
+        if scene.hash() != known.scene_hash {
+            continue;
+        }
+        let Ok(summary) = Reduced::new(&scene, Model::C, None).and_then(|model| model.run(1e-7)) else {
+            continue;
+        };
+        let Ok(intervals) = predict(&scene, &summary) else { continue };
+        for row in &known.rows {
+            let Some(interval) = intervals.get(row.quantity.as_str()) else { continue };
+            let band = row.band.unwrap_or(0.0);
+            let held = (interval.low - band..=interval.high + band).contains(&row.reference);
+            within += usize::from(held);
+            count += 1;
+            if !held {
+                missed
+                    .push(format!("{} {}: {} not in {interval:?}", known.scene, row.quantity, row.reference));
+            }
+        }
+    }
+    assert!(count >= 20, "{count}");
+    assert!(is_expected(within, count), "{within} of {count}: {missed:#?}");
+}
+
+/// An interval is as wide as its neighbours' errors let expect, not as the largest anywhere.
+#[test]
+fn intervals_of_model_c_are_narrow() {
+    let all: Vec<&Solved> = solved().iter().filter(|scene| scene.stratum == "dry").collect();
+    for (quantity, most) in [("efficiency", 0.02), ("outer_force_peak", 0.02), ("first_frequency", 0.005)] {
+        let known = cases(&all, quantity);
+        let calibrated = Calibrated::new(&known, LEVEL).unwrap();
+        let mut widths: Vec<f64> = known.iter().map(|case| calibrated.half_width(&case.place)).collect();
+        widths.sort_by(f64::total_cmp);
+        assert!(widths[widths.len() / 2] < most, "{quantity}: {widths:?}");
+    }
+}
+
+/// The page of a model has a column of intervals, or the reason why there is none.
+#[test]
+fn the_page_of_a_model_shows_what_a_reference_would_find() {
+    let page = |name: &str, more: &str| {
+        let text = std::fs::read_to_string(resolve(name).unwrap()).unwrap() + more;
+        let scene = Scene::parse(name, &text).unwrap();
+        let outcome = Reduced::new(&scene, Model::C, None).unwrap().run_with_history(1e-7).unwrap();
+        model_page(&scene, &outcome, &predict(&scene, &outcome.summary))
+    };
+    assert!(page("scaled-plate-r10", "").contains("a reference would find (95 %)"));
+    let none = page("scaled-plate-r10", "\n[series]\nimpacts = 2\n");
+    assert!(
+        none.contains(
+            "no interval of what a reference would find: the validation base has no repeated impacts"
+        )
+    );
+}
+
+/// The scale of a force is the force, of a velocity the impact's speed; negligible parts of an impact have its own.
+#[test]
+fn what_is_negligible_has_the_scale_of_the_impact() {
+    let values = |name: &str| match name {
+        "outer_force_peak" => Some(300.0),
+        "inner_force_peak" => Some(3.0),
+        "inner_velocity_final" | "efficiency" => Some(0.0),
+        _ => None,
+    };
+    let scales =
+        ["outer_force_peak", "inner_force_peak", "inner_velocity_final", "efficiency", "first_frequency"]
+            .map(|name| scale(name, values, 0.5));
+    assert_eq!(scales, [Some(300.0), Some(15.0), Some(0.5), Some(0.05), None]);
+    assert_eq!(coordinates(&solved()[0].place.unwrap()).len(), 3);
+}

@@ -1,0 +1,64 @@
+"""Solve a random tenth of the validation base again; fail where a value has moved.
+
+python validation/check.py SCENES validation/base.jsonl [--seed N] [--program PATH]
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import sys
+from pathlib import Path
+from typing import Any
+
+from solve import PROGRAM, solve
+from table import line
+
+SHARE = 0.1
+"""Of the scenes that are solved again."""
+MOVED = 0.05
+"""Change of a reference's value over its 95 % band, and of a model's, that is none."""
+
+Row = dict[str, Any]
+
+
+def moved(before: Row, after: Row) -> list[str]:
+    """A sentence for each value that is another now."""
+    if "refused" in before or "refused" in after:
+        reasons = [row.get("refused", "solved") for row in (before, after)]
+        return [f"{before['scene']}: {' -> '.join(reasons)}"] if reasons[0] != reasons[1] else []
+    sides = {"reference": [row["extrapolated"] for row in (before, after)]}
+    sides |= {name: [row["models"][name] for row in (before, after)] for name in before["models"]}
+    return [
+        f"{before['scene']}, {side}: {name} {value:.6g} -> {now.get(name)}"
+        for side, (was, now) in sides.items()
+        for name, value in was.items()
+        if value is not None and not _is_same(value, now.get(name), before["bands"].get(name))
+    ]
+
+
+def _is_same(value: float, now: float | None, band: float | None) -> bool:
+    return now is not None and abs(now - value) <= MOVED * (band or 1e-3 * abs(value))
+
+
+def main() -> int:
+    """Exit status 1: values have moved."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("scenes", type=Path)
+    parser.add_argument("table", type=Path)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--program", type=Path, default=PROGRAM)
+    given = parser.parse_args()
+    rows = [json.loads(text) for text in given.table.read_text().splitlines()]
+    count = max(1, round(SHARE * len(rows)))
+    sentences: list[str] = []
+    for before in random.Random(given.seed).sample(rows, count):
+        path = given.scenes / f"{before['scene']}.toml"
+        sentences += moved(before, line(solve(path, given.program)))
+    print("\n".join(sentences) or f"{count} of {len(rows)} scenes are as they were")
+    return 1 if sentences else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
