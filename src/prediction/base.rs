@@ -26,6 +26,8 @@ pub struct Solved {
     pub proportions: BTreeMap<String, f64>,
     /// The reference's quantities in the limit of fine meshes, SI.
     pub extrapolated: BTreeMap<String, f64>,
+    /// Half widths of their 95 % bands, SI; `None`: not determined.
+    pub bands: BTreeMap<String, Option<f64>>,
     /// Those of the models, by model; `None`: not determined.
     models: BTreeMap<String, BTreeMap<String, Option<f64>>>,
 }

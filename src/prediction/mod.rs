@@ -21,6 +21,8 @@ pub const LEVEL: f64 = 0.95;
 pub const FEWEST: usize = 30;
 /// Efficiency, and force over that of the other contact, below which a part of an impact is negligible: as the bands of references have it.
 const MINOR: f64 = 0.05;
+/// Widest band over the scale with which a reference determines a quantity.
+const DETERMINED: f64 = 0.05;
 /// Quantities with intervals.
 pub const QUANTITIES: [&str; 8] = [
     "efficiency",
@@ -89,13 +91,15 @@ pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
     }
 }
 
-/// Errors of model C in `scenes`, relative to [`scale`].
+/// Errors of model C in `scenes`, relative to [`scale`]; without those that the reference does not determine.
 pub fn cases(scenes: &[&Solved], quantity: &str) -> Vec<Case> {
     let case = |scene: &&Solved| {
         let [model, reference] = scene.values(quantity)?;
         let of_model = |name: &str| scene.values(name).map(|[model, _]| model);
-        let error = (model - reference).abs() / scale(quantity, of_model, scene.speed)?;
-        Some(Case { place: coordinates(&scene.place?), error }).filter(|case| case.error.is_finite())
+        let scale = scale(quantity, of_model, scene.speed)?;
+        let band = (*scene.bands.get(quantity)?)? / scale;
+        let error = (model - reference).abs() / scale;
+        Some(Case { place: coordinates(&scene.place?), error }).filter(|_| band <= DETERMINED)
     };
     scenes.iter().filter_map(case).collect()
 }

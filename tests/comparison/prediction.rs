@@ -2,12 +2,15 @@
 
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::prediction::{
-    Calibrated, FEWEST, LEVEL, QUANTITIES, Solved, cases, coordinates, predict, scale, solved,
+    Calibrated, LEVEL, QUANTITIES, Solved, cases, coordinates, predict, scale, solved,
 };
 use impactcheck::report::model_page;
 use impactcheck::scene::{Model, Scene, resolve};
 use impactcheck::validated::shipped;
 use std::collections::BTreeSet;
+
+/// Fewest scenes of a group whose halves are judged: each has the 19 that an interval of 95 % needs.
+const HALVES: usize = 40;
 
 /// Whether `within` of `count` is what the level lets expect, in all but one case of a thousand.
 fn is_expected(within: usize, count: usize) -> bool {
@@ -22,7 +25,7 @@ fn intervals_from_one_half_of_the_base_hold_the_other_half() {
     let mut judged = 0;
     for stratum in strata {
         let all: Vec<&Solved> = solved().iter().filter(|scene| scene.stratum == stratum).collect();
-        if all.len() < 2 * FEWEST {
+        if all.len() < HALVES {
             continue;
         }
         let halves = [0, 1].map(|half| {
