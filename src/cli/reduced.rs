@@ -76,7 +76,7 @@ fn predicted(context: &Context, scene: &Scene, request: &ModelRequest, summary: 
 
 /// A summary, and what a reference would say.
 #[derive(Serialize)]
-struct Document<'a> {
+struct PredictedSummary<'a> {
     #[serde(flatten)]
     summary: &'a Summary,
     prediction: Option<&'a BTreeMap<&'static str, Interval>>,
@@ -99,7 +99,7 @@ fn finish(
     for warning in &summary.warnings {
         context.note(format_args!("warning: {warning}"));
     }
-    let document = Document {
+    let document = PredictedSummary {
         summary,
         prediction: prediction.as_ref().ok(),
         prediction_reason: prediction.as_ref().err(),

@@ -11,7 +11,7 @@ const CONTINUUM: &str = "C";
 
 /// A scene of the base that was solved.
 #[derive(Debug, Clone, Deserialize)]
-pub struct Solved {
+pub struct SolvedScene {
     /// Name of the scene.
     pub scene: String,
     /// Hash of its physical content.
@@ -32,7 +32,7 @@ pub struct Solved {
     models: BTreeMap<String, BTreeMap<String, Option<f64>>>,
 }
 
-impl Solved {
+impl SolvedScene {
     /// Model C's value and the reference's, SI, if both have one.
     pub fn values(&self, quantity: &str) -> Option<[f64; 2]> {
         let model = *self.models.get(CONTINUUM)?.get(quantity)?;
@@ -41,8 +41,8 @@ impl Solved {
 }
 
 /// Scenes that were refused or not solved are not among them.
-pub fn solved() -> &'static [Solved] {
-    static SOLVED: LazyLock<Vec<Solved>> =
+pub fn solved() -> &'static [SolvedScene] {
+    static SOLVED: LazyLock<Vec<SolvedScene>> =
         LazyLock::new(|| TABLE.lines().filter_map(|line| serde_json::from_str(line).ok()).collect());
     &SOLVED
 }

@@ -11,7 +11,7 @@ const LEAST: f64 = 0.1;
 
 /// An error seen at a place.
 #[derive(Debug, Clone)]
-pub struct Case {
+pub struct SeenError {
     /// Coordinates. Shape (d).
     pub place: Vec<f64>,
     /// Magnitude of the error.
@@ -20,8 +20,8 @@ pub struct Case {
 
 /// Cases from which errors elsewhere are predicted.
 #[derive(Debug)]
-pub struct Calibrated<'a> {
-    cases: &'a [Case],
+pub struct ErrorScale<'a> {
+    cases: &'a [SeenError],
     /// Standard deviations of the coordinates. Shape (d).
     spread: Vec<f64>,
     least: f64,
@@ -29,9 +29,9 @@ pub struct Calibrated<'a> {
     quantile: f64,
 }
 
-impl<'a> Calibrated<'a> {
+impl<'a> ErrorScale<'a> {
     /// For intervals that hold the share `level` of all errors; `None` of fewer cases than that needs.
-    pub fn new(cases: &'a [Case], level: f64) -> Option<Self> {
+    pub fn new(cases: &'a [SeenError], level: f64) -> Option<Self> {
         let count = cases.len();
         // the new case counts as one
         let rank = (level * (count + 1) as f64).ceil() as usize;
@@ -70,7 +70,7 @@ impl<'a> Calibrated<'a> {
     }
 }
 
-fn deviation(cases: &[Case], axis: usize) -> f64 {
+fn deviation(cases: &[SeenError], axis: usize) -> f64 {
     let count = cases.len() as f64;
     let mean = cases.iter().map(|case| case.place[axis]).sum::<f64>() / count;
     let square = cases.iter().map(|case| (case.place[axis] - mean).powi(2)).sum::<f64>() / count;
@@ -94,13 +94,13 @@ mod tests {
     use super::*;
 
     /// Errors whose size grows a hundredfold along the first coordinate, with long tails.
-    fn cases(count: usize, seed: u64) -> Vec<Case> {
+    fn cases(count: usize, seed: u64) -> Vec<SeenError> {
         let mut random = fastrand::Rng::with_seed(seed);
         let mut draw = || {
             let place = vec![random.f64(), random.f64()];
             let size = 10.0_f64.powf(2.0 * place[0] - 4.0);
             let error = size * (-random.f64().ln()).powf(1.3);
-            Case { place, error }
+            SeenError { place, error }
         };
         (0..count).map(|_| draw()).collect()
     }
@@ -111,7 +111,7 @@ mod tests {
         let (mut within, mut all) = (0, 0);
         for seed in 0..40 {
             let known = cases(100, seed);
-            let calibrated = Calibrated::new(&known, 0.95).unwrap();
+            let calibrated = ErrorScale::new(&known, 0.95).unwrap();
             for case in cases(200, 1000 + seed) {
                 within += usize::from(case.error <= calibrated.half_width(&case.place));
                 all += 1;
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn intervals_are_narrow_where_errors_are_small() {
         let known = cases(200, 7);
-        let calibrated = Calibrated::new(&known, 0.95).unwrap();
+        let calibrated = ErrorScale::new(&known, 0.95).unwrap();
         let [small, large] = [0.1, 0.9].map(|x| calibrated.half_width(&[x, 0.5]));
         assert!(large > 10.0 * small, "{small} {large}");
     }
@@ -132,7 +132,7 @@ mod tests {
     /// 19 cases are the fewest from which one in twenty can be told.
     #[test]
     fn too_few_cases_tell_nothing() {
-        assert!(Calibrated::new(&cases(18, 1), 0.95).is_none());
-        assert!(Calibrated::new(&cases(19, 1), 0.95).is_some());
+        assert!(ErrorScale::new(&cases(18, 1), 0.95).is_none());
+        assert!(ErrorScale::new(&cases(19, 1), 0.95).is_some());
     }
 }

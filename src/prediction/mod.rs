@@ -6,8 +6,8 @@
 mod base;
 mod conformal;
 
-pub use base::{Solved, solved};
-pub use conformal::{Calibrated, Case};
+pub use base::{SolvedScene, solved};
+pub use conformal::{ErrorScale, SeenError};
 
 use crate::kinds::{self, Place};
 use crate::result::Summary;
@@ -60,8 +60,8 @@ pub type Prediction = Result<BTreeMap<&'static str, Interval>, String>;
 pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
     let kind = kinds::of(scene);
     let stratum = kind.stratum(scene)?;
-    let place = kind.place(scene, continuum).ok_or("the result does not tell its contact radius")?;
-    let others: Vec<&Solved> = solved()
+    let place = kind.place(scene, continuum).ok_or("the contact radius is not known")?;
+    let others: Vec<&SolvedScene> = solved()
         .iter()
         .filter(|other| other.stratum == stratum && Some(other.hash.as_str()) != Some(&continuum.scene_hash))
         .collect();
@@ -71,7 +71,7 @@ pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
     for quantity in QUANTITIES {
         let Some(value) = continuum.value(quantity) else { continue };
         let cases = cases(&others, quantity);
-        let Some(calibrated) = Calibrated::new(&cases, LEVEL).filter(|_| cases.len() >= FEWEST) else {
+        let Some(calibrated) = ErrorScale::new(&cases, LEVEL).filter(|_| cases.len() >= FEWEST) else {
             continue;
         };
         let scale = scale(quantity, |name| continuum.value(name), speed).unwrap_or(0.0);
@@ -92,14 +92,14 @@ pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
 }
 
 /// Errors of model C in `scenes`, relative to [`scale`]; without those that the reference does not determine.
-pub fn cases(scenes: &[&Solved], quantity: &str) -> Vec<Case> {
-    let case = |scene: &&Solved| {
+pub fn cases(scenes: &[&SolvedScene], quantity: &str) -> Vec<SeenError> {
+    let case = |scene: &&SolvedScene| {
         let [model, reference] = scene.values(quantity)?;
         let of_model = |name: &str| scene.values(name).map(|[model, _]| model);
         let scale = scale(quantity, of_model, scene.speed)?;
         let band = (*scene.bands.get(quantity)?)? / scale;
         let error = (model - reference).abs() / scale;
-        Some(Case { place: coordinates(&scene.place?), error }).filter(|_| band <= DETERMINED)
+        Some(SeenError { place: coordinates(&scene.place?), error }).filter(|_| band <= DETERMINED)
     };
     scenes.iter().filter_map(case).collect()
 }
@@ -125,7 +125,7 @@ pub fn scale(quantity: &str, value: impl Fn(&str) -> Option<f64>, speed: f64) ->
 ///
 /// # Errors
 /// A sentence that names the first one that does not.
-fn within(others: &[&Solved], place: &Place, proportions: &[(&'static str, f64)]) -> Result<(), String> {
+fn within(others: &[&SolvedScene], place: &Place, proportions: &[(&'static str, f64)]) -> Result<(), String> {
     let measures = kinds::MEASURES.into_iter().zip(place.measures()).enumerate();
     let of_place = measures.map(|(k, (name, own))| {
         let known = others.iter().filter_map(|other| Some(other.place?.measures()[k]));
