@@ -66,7 +66,7 @@ fn parts<'a>(text: &'a str, language: &str) -> Vec<Part<'a>> {
 }
 
 /// Lines of an output that a page shows at most; of more the first ones and `MORE`.
-const SHOWN: usize = 24;
+const SHOWN: usize = 34;
 const MORE: &str = "[...]";
 
 /// What a page shows of an output in the `folder` of a reader.
