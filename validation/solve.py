@@ -22,16 +22,6 @@ from typing import Any
 
 PROGRAM = Path(__file__).resolve().parent.parent / "target" / "release" / "impactcheck"
 MODELS = ("A", "B", "C")
-QUANTITIES = (
-    "efficiency",
-    "outer_velocity_final",
-    "inner_velocity_final",
-    "outer_force_peak",
-    "inner_force_peak",
-    "outer_contact_end",
-    "inner_contact_end",
-    "first_frequency",
-)
 DIGITS = 7
 
 Row = dict[str, Any]
@@ -41,46 +31,23 @@ def _short(value: float | None) -> float | None:
     return None if value is None else float(f"{value:.{DIGITS}g}")
 
 
-def _values(summary: Row) -> Row:
-    return {name: _short(summary.get(name)) for name in QUANTITIES}
-
-
-def _model(found: Row) -> Row:
-    summary = found["summary"]
-    limits = {limit["measure"]: _short(limit["value"]) for limit in summary["limits"]}
-    unsound = [check["check"] for check in found["integrity"] if check["verdict"] == "fail"]
-    return {
-        "modes": summary["modes"],
-        "values": _values(summary),
-        "contacts": [summary["outer_contacts"], summary["inner_contacts"]],
-        "truncation_error": _short(summary["truncation_error"]),
-        "mesh_error": _short(summary.get("mesh_error")),
-        "limits": limits,
-        "warnings": len(summary["warnings"]),
-        "unsound": unsound,
-    }
-
-
 def row(document: Row) -> Row:
-    """What is kept of the comparison of one scene."""
+    """What is kept of the comparison of one scene: what the meshes say, and the models' values."""
     scene = document["scenes"][0]
     reference = scene["reference"]
-    bands = reference.get("uncertainty") or {}
-    limits = (reference.get("convergence") or {}).get("quantities", {})
+    found = reference["convergence"]["quantities"]
+    summaries = {model["model"]: model["summary"] for model in scene["models"]}
     return {
         "hash": reference["scene_hash"],
         "dofs": reference["mesh"]["dofs"],
-        "warnings": reference["warnings"],
         "unsound": [check["check"] for check in scene["integrity"] if check["verdict"] == "fail"],
         "contacts": [reference["outer_contacts"], reference["inner_contacts"]],
-        "reference": _values(reference),
-        "extrapolated": {
-            name: _short(found["extrapolated"])
-            for name, found in limits.items()
-            if name in QUANTITIES
+        "extrapolated": {name: _short(of["extrapolated"]) for name, of in found.items()},
+        "bands": {name: _short(of["band"]) for name, of in found.items()},
+        "models": {
+            model: {name: _short(summary.get(name)) for name in found}
+            for model, summary in summaries.items()
         },
-        "bands": {name: _short(bands.get(name)) for name in QUANTITIES},
-        "models": {model["model"]: _model(model) for model in scene["models"]},
     }
 
 
@@ -118,9 +85,9 @@ def solve(path: Path, program: Path) -> Row:
         found |= row(json.loads(ran.stdout)) | {"place": place}
     else:
         # the sentence of the error, which is broken into lines with bars before them
-        told = ran.stderr[ran.stderr.rfind("\u00d7") + 1 :].split("help:")[0]
+        reason = ran.stderr[ran.stderr.rfind("\u00d7") + 1 :].split("help:")[0]
         found |= {
-            "refused": " ".join(told.replace("\u2502", " ").split()),
+            "refused": " ".join(reason.replace("\u2502", " ").split()),
             "status": ran.returncode,
         }
     file = tomllib.loads(path.read_text(encoding="utf-8"))

@@ -39,14 +39,12 @@ def _proportions(scene: dict[str, Any]) -> dict[str, float]:
 def line(row: dict[str, Any]) -> dict[str, Any]:
     """What the table keeps of a scene, which its number makes again."""
     scene = row["file"]
-    names = ("scene", "stratum", "hash", "refused", "place", "dofs", "unsound", "contacts")
-    kept = {name: row[name] for name in (*names, "extrapolated", "bands", "seconds") if name in row}
+    kept = {name: value for name, value in row.items() if name != "file"}
     if "refused" not in row:
         kept["speed"] = scene["outer"]["speed"]
         kept["proportions"] = {
             name: float(f"{value:.7g}") for name, value in _proportions(scene).items()
         }
-        kept["models"] = {name: model["values"] for name, model in row["models"].items()}
     return kept
 
 

@@ -5,8 +5,8 @@ use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{ExitStatus, Result};
 use crate::file::write_file;
 use crate::format::{prefixed, with_unit};
-use crate::kinds::{SharedBodies, of as kinds_of};
-use crate::prediction::{self, Interval, Prediction};
+use crate::kinds::SharedBodies;
+use crate::prediction::{self, Interval, Prediction, Similar};
 use crate::report::{self, history_format};
 use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Sideways, Summary};
 use crate::scene::{Model, Scene};
@@ -59,22 +59,24 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     finish(context, arguments, (&scene, &outcome), &prediction)
 }
 
-/// What a reference of `scene` would say, which model C is run for unless `summary` is its own.
+/// What a reference of `scene` would find. Model C runs for it as it is by default, unless `summary` is its own.
 fn predicted(context: &Context, scene: &Scene, request: &ModelRequest, summary: &Summary) -> Prediction {
     // before model C costs anything
-    kinds_of(scene).stratum(scene)?;
-    let continuum = Model::C.to_string();
-    if summary.model.as_ref() == Some(&continuum) && request.modes.is_none() && summary.choice.is_none() {
+    Similar::of(scene)?;
+    let default = ModelRequest { model: Some(RequestedModel::Named(Model::C)), ..ModelRequest::default() };
+    let is_default = request.modes.or(scene.reduced.modes).is_none() && request.tolerance.is_none();
+    if is_default && summary.choice.is_none() && summary.model == Some(Model::C.to_string()) {
         return prediction::predict(scene, summary);
     }
-    let request = ModelRequest { model: Some(RequestedModel::Named(Model::C)), ..ModelRequest::default() };
-    let outcome = kinds::of(scene)
-        .reduced(context, scene, &request, &SharedBodies::default(), false)
+    let mut scene = scene.clone();
+    scene.reduced.modes = None;
+    let outcome = kinds::of(&scene)
+        .reduced(context, &scene, &default, &SharedBodies::default(), false)
         .map_err(|error| format!("model C does not run: {error}"))?;
-    prediction::predict(scene, &outcome.summary)
+    prediction::predict(&scene, &outcome.summary)
 }
 
-/// A summary, and what a reference would say.
+/// A summary, and what a reference would find.
 #[derive(Serialize)]
 struct PredictedSummary<'a> {
     #[serde(flatten)]
@@ -105,7 +107,7 @@ fn finish(
         prediction_reason: prediction.as_ref().err(),
     };
     arguments.json.print(&document, |document| {
-        let mut lines = vec![table(document.summary, |name| kinds_of(scene).has(scene, name))];
+        let mut lines = vec![table(document.summary, |name| crate::kinds::of(scene).has(scene, name))];
         lines.extend(document.prediction.map(|intervals| predicted_lines(intervals, summary)));
         lines.join("\n")
     })?;
@@ -116,15 +118,14 @@ fn finish(
 fn predicted_lines(intervals: &BTreeMap<&'static str, Interval>, summary: &Summary) -> String {
     let mut lines = Vec::new();
     for Quantity { name, unit, .. } in summary.quantities.iter() {
-        let Some(Interval { low, high, level, scenes, stratum }) = intervals.get(name) else { continue };
+        let Some(interval) = intervals.get(name) else { continue };
         if lines.is_empty() {
-            let level = 100.0 * level;
+            let (level, Interval { scenes, stratum, .. }) = (100.0 * interval.level, interval);
             lines.push(format!(
                 "  a reference would find ({level:.0} %, from {scenes} solved scenes of the group `{stratum}`)"
             ));
         }
-        let to = prefixed(unit, low.abs().max(high.abs()));
-        let [low, high] = [*low, *high].map(|bound| with_unit(bound, to, 4));
+        let [low, high] = interval.shown(unit);
         lines.push(format!("  {name:<24} {low:>14} to {high}"));
     }
     lines.join("\n")

@@ -17,16 +17,18 @@ pub(super) fn stated(text: &str) -> Option<[f64; 2]> {
     while let Some(line) = lines.next() {
         let names = cells(line);
         let below = lines.peek().map(|line| cells(line)).unwrap_or_default();
-        let beneath = |name: &str| {
+        let below_heading = |name: &str| {
             let place = names.iter().position(|cell| cell.eq_ignore_ascii_case(name))?;
             number(below.get(place)?)
         };
-        let behind = |name: &str| {
+        let after_equals = |name: &str| {
             let mut parts = names.iter().filter_map(|cell| cell.split_once('='));
             let (_, value) = parts.find(|(of, _)| of.trim().eq_ignore_ascii_case(name))?;
             number(value.trim().trim_end_matches(['s', 'S']).trim_end())
         };
-        let found = beneath("start").zip(beneath("increment")).or_else(|| behind("t0").zip(behind("tinc")));
+        let found = below_heading("start")
+            .zip(below_heading("increment"))
+            .or_else(|| after_equals("t0").zip(after_equals("tinc")));
         if let Some((start, interval)) = found.filter(|(t, dt)| t.is_finite() && dt.is_finite() && *dt > 0.0)
         {
             return Some([start, interval]);

@@ -22,7 +22,7 @@ const NO_VALUE: [&str; 2] = ["NOVALUE", "NONE"];
 pub(super) enum MmeFile {
     /// One channel.
     Channel,
-    /// The list of channels, beside which they are.
+    /// The list of channels, in the folder of the channels.
     List,
     /// The header of the test.
     Test,
@@ -170,7 +170,7 @@ fn head(text: &str) -> (Vec<(String, &str)>, usize) {
     (names, count)
 }
 
-/// The files of the channels of a test in the order of their numbers: beside `file`, or below it in a folder `Channel`.
+/// The files of the channels of a test in the order of their numbers: in the folder of `file`, or in its folder `Channel`.
 fn neighbours(file: &Path, below: bool) -> Result<Vec<PathBuf>, String> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let entries = |folder: &Path| -> Result<Vec<PathBuf>, String> {
@@ -179,13 +179,13 @@ fn neighbours(file: &Path, below: bool) -> Result<Vec<PathBuf>, String> {
         });
         read.map_err(|e| format!("its folder {} can't be read: {e}", folder.display()))
     };
-    let beside = entries(folder)?;
+    let around = entries(folder)?;
     let is_channels = |path: &&PathBuf| {
         path.is_dir() && path.file_name().is_some_and(|name| name.eq_ignore_ascii_case("channel"))
     };
-    let all = match beside.iter().find(is_channels).filter(|_| below) {
+    let all = match around.iter().find(is_channels).filter(|_| below) {
         Some(channels) => entries(channels)?,
-        None => beside,
+        None => around,
     };
     let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().to_lowercase());
     let mut found: Vec<(u32, PathBuf)> = all
@@ -243,7 +243,7 @@ mod tests {
 
     /// The test's header leads to its channels, by number; another test's are none of them. Times may be in a channel.
     #[test]
-    fn a_test_has_the_channels_beside_its_list() {
+    fn a_test_has_the_channels_of_its_folder() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = |name: &str| folder.path().join(name);
         std::fs::create_dir(path("Channel")).expect("made");

@@ -40,9 +40,44 @@ impl SolvedScene {
     }
 }
 
+/// A line of the table.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum TableLine {
+    /// A scene that was refused or not solved, with the reason.
+    Refused {
+        #[serde(rename = "refused")]
+        _reason: String,
+    },
+    Solved(SolvedScene),
+}
+
 /// Scenes that were refused or not solved are not among them.
 pub fn solved() -> &'static [SolvedScene] {
-    static SOLVED: LazyLock<Vec<SolvedScene>> =
-        LazyLock::new(|| TABLE.lines().filter_map(|line| serde_json::from_str(line).ok()).collect());
+    static SOLVED: LazyLock<Vec<SolvedScene>> = LazyLock::new(|| {
+        let line = |text| match serde_json::from_str(text) {
+            Ok(TableLine::Solved(scene)) => Some(scene),
+            Ok(TableLine::Refused { .. }) | Err(_) => None,
+        };
+        TABLE.lines().filter_map(line).collect()
+    });
     &SOLVED
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No line is passed over because it is not understood.
+    #[test]
+    fn every_scene_is_solved_or_has_a_reason() {
+        for text in TABLE.lines() {
+            let line: TableLine = serde_json::from_str(text).unwrap();
+            assert!(
+                matches!(&line, TableLine::Refused { _reason } if !_reason.is_empty())
+                    || matches!(line, TableLine::Solved(_))
+            );
+        }
+        assert!(!solved().is_empty());
+    }
 }

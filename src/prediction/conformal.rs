@@ -129,9 +129,9 @@ mod tests {
         assert!(large > 10.0 * small, "{small} {large}");
     }
 
-    /// 19 cases are the fewest from which one in twenty can be told.
+    /// 19 cases are the fewest that show what one in twenty exceeds.
     #[test]
-    fn too_few_cases_tell_nothing() {
+    fn too_few_cases_give_no_interval() {
         assert!(ErrorScale::new(&cases(18, 1), 0.95).is_none());
         assert!(ErrorScale::new(&cases(19, 1), 0.95).is_some());
     }

@@ -1,4 +1,4 @@
-//! How far a reduced model of a scene without a reference can be trusted: intervals that hold what a reference would say.
+//! How far a reduced model of a scene without a reference can be trusted: intervals that hold what a reference would find.
 //!
 //! They come from the errors of model C in similar scenes of the validation base. Models A and B are judged by model C of the same
 //! scene: what they differ by is known.
@@ -9,8 +9,9 @@ mod conformal;
 pub use base::{SolvedScene, solved};
 pub use conformal::{ErrorScale, SeenError};
 
+use crate::format::{prefixed, with_unit};
 use crate::kinds::{self, Place};
-use crate::result::Summary;
+use crate::result::{Quantity, Summary};
 use crate::scene::Scene;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -21,21 +22,13 @@ pub const LEVEL: f64 = 0.95;
 pub const FEWEST: usize = 30;
 /// Efficiency, and force over that of the other contact, below which a part of an impact is negligible: as the bands of references have it.
 const MINOR: f64 = 0.05;
+/// End of the names of velocities.
+const VELOCITY: &str = "_velocity_final";
+/// Digits shown of an interval.
+const DIGITS: usize = 4;
 /// Widest band over the scale with which a reference determines a quantity.
 const DETERMINED: f64 = 0.05;
-/// Quantities with intervals.
-pub const QUANTITIES: [&str; 8] = [
-    "efficiency",
-    "outer_velocity_final",
-    "inner_velocity_final",
-    "outer_force_peak",
-    "inner_force_peak",
-    "outer_contact_end",
-    "inner_contact_end",
-    "first_frequency",
-];
-
-/// What a reference would say of a quantity.
+/// What a reference would find of a quantity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Interval {
     /// Least value, SI.
@@ -50,50 +43,95 @@ pub struct Interval {
     pub stratum: &'static str,
 }
 
+impl Interval {
+    /// Both values with the same prefix of `unit`.
+    pub fn shown(&self, unit: &str) -> [String; 2] {
+        let to = prefixed(unit, self.low.abs().max(self.high.abs()));
+        [self.low, self.high].map(|value| with_unit(value, to, DIGITS))
+    }
+}
+
 /// Intervals by quantity, or why there are none.
 pub type Prediction = Result<BTreeMap<&'static str, Interval>, String>;
 
-/// What a reference of `scene` would say, where model C has the summary `continuum`.
+/// What a reference of `scene` would find, where model C, as it is by default, has the summary `continuum`.
 ///
 /// # Errors
 /// A sentence where the scene is unlike those of the base.
 pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
+    let similar = Similar::of(scene)?;
     let kind = kinds::of(scene);
-    let stratum = kind.stratum(scene)?;
     let place = kind.place(scene, continuum).ok_or("the contact radius is not known")?;
-    let others: Vec<&SolvedScene> = solved()
-        .iter()
-        .filter(|other| other.stratum == stratum && Some(other.hash.as_str()) != Some(&continuum.scene_hash))
-        .collect();
-    within(&others, &place, &kind.proportions(scene))?;
-    let speed = kind.approach(scene).map_err(|error| error.to_string())?.outer_speed;
-    let mut found = BTreeMap::new();
-    for quantity in QUANTITIES {
-        let Some(value) = continuum.value(quantity) else { continue };
-        let cases = cases(&others, quantity);
-        let Some(calibrated) = ErrorScale::new(&cases, LEVEL).filter(|_| cases.len() >= FEWEST) else {
-            continue;
-        };
-        let scale = scale(quantity, |name| continuum.value(name), speed).unwrap_or(0.0);
-        let half = calibrated.half_width(&coordinates(&place)) * scale;
-        // what cannot be negative is not
-        let least =
-            if value >= 0.0 && !quantity.ends_with("_velocity_final") { 0.0 } else { f64::NEG_INFINITY };
-        let (low, high, scenes) = ((value - half).max(least), value + half, cases.len());
-        found.insert(quantity, Interval { low, high, level: LEVEL, scenes, stratum });
+    for (k, (name, own)) in kinds::MEASURES.into_iter().zip(place.measures()).enumerate() {
+        similar.require_within(name, own, |other| Some(other.place?.measures()[k]))?;
     }
-    match found.is_empty() {
-        true => Err(format!(
-            "the validation base has {} scenes of the group `{stratum}`; {FEWEST} are needed",
-            others.len()
-        )),
-        false => Ok(found),
+    let speed = kind.approach(scene).map_err(|error| error.to_string())?.outer_speed;
+    let interval = |quantity: &Quantity| {
+        let value = quantity.value?;
+        let errors = errors(&similar.scenes, quantity.name);
+        let scenes = errors.len();
+        let error = ErrorScale::new(&errors, LEVEL).filter(|_| scenes >= FEWEST)?;
+        let scale = scale(quantity.name, |name| continuum.value(name), speed)?;
+        let half = error.half_width(&coordinates(&place)) * scale;
+        // a velocity may change its sign
+        let least = if quantity.name.ends_with(VELOCITY) { f64::NEG_INFINITY } else { 0.0 };
+        let (low, high) = ((value - half).max(least), value + half);
+        Some((quantity.name, Interval { low, high, level: LEVEL, scenes, stratum: similar.stratum }))
+    };
+    Ok(continuum.quantities.iter().filter_map(interval).collect())
+}
+
+/// Scenes of the base that are of the same group as another one.
+#[derive(Debug)]
+pub struct Similar {
+    stratum: &'static str,
+    scenes: Vec<&'static SolvedScene>,
+}
+
+impl Similar {
+    /// To `scene`, which is not among them.
+    ///
+    /// # Errors
+    /// A sentence: there are too few, or the scene's own numbers lie beyond theirs.
+    pub fn of(scene: &Scene) -> Result<Self, String> {
+        let kind = kinds::of(scene);
+        let (stratum, hash) = (kind.stratum(scene)?, scene.hash());
+        let scenes: Vec<&SolvedScene> =
+            solved().iter().filter(|other| other.stratum == stratum && other.hash != hash).collect();
+        if scenes.len() < FEWEST {
+            return Err(format!(
+                "the validation base has {} scenes of the group `{stratum}`; {FEWEST} are needed",
+                scenes.len()
+            ));
+        }
+        let found = Self { stratum, scenes };
+        for (name, own) in kind.proportions(scene) {
+            found.require_within(name, own, |other| other.proportions.get(name).copied())?;
+        }
+        Ok(found)
+    }
+
+    /// Refuses a number that lies beyond those of all scenes.
+    fn require_within(
+        &self,
+        name: &str,
+        own: f64,
+        of: impl Fn(&SolvedScene) -> Option<f64>,
+    ) -> Result<(), String> {
+        let known = self.scenes.iter().filter_map(|other| of(other));
+        let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (v.min(l), v.max(h)));
+        match (low..=high).contains(&own) {
+            true => Ok(()),
+            false => Err(format!(
+                "the scene lies beyond the validation base: {name} is {own:.3}, there it is {low:.3} to {high:.3}"
+            )),
+        }
     }
 }
 
 /// Errors of model C in `scenes`, relative to [`scale`]; without those that the reference does not determine.
-pub fn cases(scenes: &[&SolvedScene], quantity: &str) -> Vec<SeenError> {
-    let case = |scene: &&SolvedScene| {
+pub fn errors(scenes: &[&SolvedScene], quantity: &str) -> Vec<SeenError> {
+    let error = |scene: &&SolvedScene| {
         let [model, reference] = scene.values(quantity)?;
         let of_model = |name: &str| scene.values(name).map(|[model, _]| model);
         let scale = scale(quantity, of_model, scene.speed)?;
@@ -101,7 +139,7 @@ pub fn cases(scenes: &[&SolvedScene], quantity: &str) -> Vec<SeenError> {
         let error = (model - reference).abs() / scale;
         Some(SeenError { place: coordinates(&scene.place?), error }).filter(|_| band <= DETERMINED)
     };
-    scenes.iter().filter_map(case).collect()
+    scenes.iter().filter_map(error).collect()
 }
 
 /// Where a scene lies, for neighbours: the logarithms of its numbers.
@@ -116,33 +154,7 @@ pub fn scale(quantity: &str, value: impl Fn(&str) -> Option<f64>, speed: f64) ->
     Some(match quantity {
         "efficiency" => own.max(MINOR),
         "inner_force_peak" => own.max(MINOR * value("outer_force_peak")?),
-        _ if quantity.ends_with("_velocity_final") => speed,
+        _ if quantity.ends_with(VELOCITY) => speed,
         _ => own,
     })
-}
-
-/// Whether numbers lie within those of `others`.
-///
-/// # Errors
-/// A sentence that names the first one that does not.
-fn within(others: &[&SolvedScene], place: &Place, proportions: &[(&'static str, f64)]) -> Result<(), String> {
-    let measures = kinds::MEASURES.into_iter().zip(place.measures()).enumerate();
-    let of_place = measures.map(|(k, (name, own))| {
-        let known = others.iter().filter_map(|other| Some(other.place?.measures()[k]));
-        (name, own, known.collect::<Vec<f64>>())
-    });
-    let of_scene = proportions.iter().map(|(name, own)| {
-        let known = others.iter().filter_map(|other| other.proportions.get(*name).copied());
-        (*name, *own, known.collect())
-    });
-    for (name, own, known) in of_place.chain(of_scene) {
-        let low = known.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = known.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if !known.is_empty() && !(low..=high).contains(&own) {
-            return Err(format!(
-                "the scene lies beyond the validation base: {name} is {own:.3}, there it is {low:.3} to {high:.3}"
-            ));
-        }
-    }
-    Ok(())
 }

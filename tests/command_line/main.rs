@@ -16,6 +16,7 @@ mod interruption;
 mod measured;
 mod no_plate;
 mod optimise;
+mod prediction;
 mod program;
 mod record_formats;
 mod scene_files;

@@ -3,7 +3,7 @@
 use crate::format::{model_name, prefixed, with_unit};
 use crate::kinds::of as kind_of;
 use crate::plot::{ChartPanel, chart};
-use crate::prediction::{Interval, Prediction};
+use crate::prediction::Prediction;
 use crate::report::figure::curves::curves_chart;
 use crate::report::kinds;
 use crate::report::page::facts::facts;
@@ -76,17 +76,13 @@ fn quantities(scene: &Scene, summary: &Summary, prediction: &Prediction) -> Mark
         value.map_or_else(|| "not determined".to_owned(), |value| with_unit(value, prefixed(unit, value), 5))
     };
     let found = prediction.as_ref().ok();
-    let interval = |Interval { low, high, .. }: &Interval, unit| {
-        let to = prefixed(unit, low.abs().max(high.abs()));
-        format!("{} to {}", with_unit(*low, to, 4), with_unit(*high, to, 4))
-    };
     html! { table {
         @if found.is_some() { thead { tr { th {} th { "model" } th { "a reference would find (95 %)" } } } }
         tbody { @for quantity in own() { tr {
             th scope="row" { (named(quantity.name)) }
             td { (shown(quantity.value, quantity.unit)) }
             @if let Some(intervals) = found {
-                td { @if let Some(one) = intervals.get(quantity.name) { (interval(one, quantity.unit)) } }
+                td { @if let Some(one) = intervals.get(quantity.name) { (one.shown(quantity.unit).join(" to ")) } }
             }
         } } }
     } }
