@@ -200,7 +200,7 @@ def yielding(point: Point) -> Table:
 
 
 def off_centre(point: Point) -> Table:
-    """The outer body strikes beside the centre."""
+    """The outer body strikes away from the centre."""
     scene = dry(point)
     plate = scene["plate"]
     plate["radius"] = min(plate["radius"], 20.0 * plate["thickness"])

@@ -43,7 +43,7 @@ def test_patches_and_contact_times_are_those_drawn() -> None:
     assert max(times) / min(times) > 100.0
 
 
-def test_what_moves_by_more_than_a_twentieth_of_its_band_is_told() -> None:
+def test_what_moves_by_more_than_a_twentieth_of_its_band_is_listed() -> None:
     """Of the reference and of the models; and a scene that is refused now."""
     before = {
         "scene": "dry-000",
@@ -53,11 +53,11 @@ def test_what_moves_by_more_than_a_twentieth_of_its_band_is_told() -> None:
     }
     assert moved(before, before) == []
     for side in ("extrapolated", "models"):
-        for change, told in ((4e-4, 0), (6e-4, 1)):
+        for change, count in ((4e-4, 0), (6e-4, 1)):
             after = {**before, "extrapolated": {"efficiency": 0.5}}
             if side == "extrapolated":
                 after["extrapolated"] = {"efficiency": 0.5 + change}
             else:
                 after["models"] = {"C": {"efficiency": 0.501 - change, "inner_force_peak": None}}
-            assert len(moved(before, after)) == told
+            assert len(moved(before, after)) == count
     assert moved(before, {"scene": "dry-000", "refused": "why"}) == ["dry-000: solved -> why"]
