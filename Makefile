@@ -3,8 +3,8 @@
 # make report    the report of the shipped scenes, into reports/
 # make wheel    the Python package, into target/wheels, and a clean environment with it: target/wheel-python
 # make solutions computes the stored references of the shipped scenes again
-# make validation  solves random scenes for the table that predictions rest on: hours; goes on where it was stopped
-#                (SHARD=2/4: the second of four machines)
+# make validation  solves the random scenes that the table of predictions lacks: hours; goes on where it was stopped
+#                (SHARD=2/4: the second of four machines; without validation/base.jsonl it solves all)
 # make evidence  slow evidence: references of all scenes and the truth of their bands, model C on the validation scenes,
 #                studies, run time against error, random impacts, killed runs, FEniCSx's releases (an hour or more; the last
 #                needs root)
@@ -95,7 +95,8 @@ solutions: setup
 validation: setup
 	cargo build --release
 	$(TOOL) validation/draw.py $(OUT)/validation/scenes
-	IMPACTCHECK_PYTHON=$(PYTHON) $(TOOL) validation/solve.py $(OUT)/validation/scenes $(OUT)/validation/rows $(if $(SHARD),--shard $(SHARD))
+	IMPACTCHECK_PYTHON=$(PYTHON) $(TOOL) validation/solve.py $(OUT)/validation/scenes $(OUT)/validation/rows \
+	    --known validation/base.jsonl $(if $(SHARD),--shard $(SHARD))
 	$(TOOL) validation/table.py $(OUT)/validation/rows validation/base.jsonl
 
 evidence: setup wheel

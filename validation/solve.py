@@ -1,10 +1,11 @@
 """Solve scenes of the validation base: reference, its band, and the reduced models.
 
-    python validation/solve.py SCENES ROWS [--shard 1/4] [--program PATH]
+    python validation/solve.py SCENES ROWS [--known TABLE] [--shard 1/4] [--longest SECONDS]
 
-writes `ROWS/<scene>.json` for every scene file in the folder SCENES that has none yet; so a run
-that was stopped goes on, and shards on several machines share the work. A scene that is refused or
-not solved gets a row with the reason.
+writes `ROWS/<scene>.json` for every scene file in the folder SCENES that has none yet and is not in
+TABLE; so a run that was stopped goes on, and shards on several machines share the work. A scene
+that is refused or not solved gets a row with the reason; one that takes longer than SECONDS gets
+none, and waits for a run that allows more.
 """
 
 from __future__ import annotations
@@ -57,8 +58,11 @@ def _place(validated: Path) -> Row | None:
     return next((json.loads(line)["place"] for line in lines), None)
 
 
-def solve(path: Path, program: Path) -> Row:
-    """Compare the models with a fresh reference of the scene; or why that is not possible."""
+def solve(path: Path, program: Path, longest: float | None = None) -> Row:
+    """Compare the models with a fresh reference of the scene; or why that is not possible.
+
+    Raises ``subprocess.TimeoutExpired`` after ``longest`` seconds.
+    """
     begun = time.monotonic()
     with tempfile.TemporaryDirectory() as folder:
         command: list[str | Path] = [
@@ -78,7 +82,9 @@ def solve(path: Path, program: Path) -> Row:
             "--out",
             f"{folder}/page",
         ]
-        ran = subprocess.run(command, capture_output=True, text=True, check=False)
+        ran = subprocess.run(
+            command, capture_output=True, text=True, check=False, timeout=longest
+        )
         place = _place(Path(folder) / "store" / "validated.jsonl")
     found: Row = {"scene": path.stem, "stratum": path.stem.rsplit("-", 1)[0]}
     if ran.stdout.strip():
@@ -101,22 +107,35 @@ def _shard(text: str) -> tuple[int, int]:
     return number, count
 
 
+def _names(table: Path | None) -> set[str]:
+    """Of the scenes in a table."""
+    lines = table.read_text(encoding="utf-8").splitlines() if table and table.exists() else []
+    return {json.loads(line)["scene"] for line in lines}
+
+
 def main() -> None:
     """Solve what is missing."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenes", type=Path)
     parser.add_argument("rows", type=Path)
     parser.add_argument("--shard", type=_shard, default=(1, 1), help="such as 2/4: the second of 4")
+    parser.add_argument("--known", type=Path, help="table of scenes that are not solved again")
+    parser.add_argument("--longest", type=float, help="seconds for a scene; others wait")
     parser.add_argument("--program", type=Path, default=PROGRAM)
     given = parser.parse_args()
     number, count = given.shard
+    known = _names(given.known)
     given.rows.mkdir(parents=True, exist_ok=True)
     # from every stratum early
     paths = sorted(given.scenes.glob("*.toml"), key=lambda path: (path.stem[-3:], path.stem))
     for path in paths[number - 1 :: count]:
         target = given.rows / f"{path.stem}.json"
-        if not target.exists():
-            found = solve(path, given.program)
+        if path.stem not in known and not target.exists():
+            try:
+                found = solve(path, given.program, given.longest)
+            except subprocess.TimeoutExpired:
+                print(f"{path.stem}: over {given.longest:g} s, waits", file=sys.stderr, flush=True)
+                continue
             partial = target.with_suffix(".partial")
             partial.write_text(json.dumps(found))
             shutil.move(partial, target)

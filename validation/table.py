@@ -3,6 +3,7 @@
     python validation/table.py ROWS validation/base.jsonl
 
 One scene a line, in the order of the names; those that were refused or not solved with the reason.
+Scenes of the table that have no new row stay.
 """
 
 from __future__ import annotations
@@ -54,8 +55,12 @@ def main() -> None:
     parser.add_argument("rows", type=Path)
     parser.add_argument("table", type=Path)
     given = parser.parse_args()
-    rows = [json.loads(path.read_text()) for path in sorted(given.rows.glob("*.json"))]
-    text = "".join(json.dumps(line(row), separators=(",", ":")) + "\n" for row in rows)
+    before = given.table.read_text(encoding="utf-8").splitlines() if given.table.exists() else []
+    lines = {row["scene"]: row for row in map(json.loads, before)}
+    for path in given.rows.glob("*.json"):
+        lines[path.stem] = line(json.loads(path.read_text()))
+    rows = [lines[name] for name in sorted(lines)]
+    text = "".join(json.dumps(row, separators=(",", ":")) + "\n" for row in rows)
     if len(text) > LARGEST:
         parser.error(f"the table has {len(text)} bytes; it may have {LARGEST}")
     given.table.write_text(text, encoding="utf-8")
