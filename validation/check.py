@@ -12,13 +12,16 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from solve import PROGRAM, solve
+from solve import MODELS, PROGRAM, solve
 from table import line
 
 SHARE = 0.1
 """Of the scenes that are solved again."""
 MOVED = 0.05
 """Change of a reference's value over its 95 % band, and of a model's, that is none."""
+
+NONE = (None,) * (2 + len(MODELS))
+"""Values of a quantity that is not there."""
 
 Row = dict[str, Any]
 
@@ -28,13 +31,12 @@ def moved(before: Row, after: Row) -> list[str]:
     if "refused" in before or "refused" in after:
         reasons = [row.get("refused", "solved") for row in (before, after)]
         return [f"{before['scene']}: {' -> '.join(reasons)}"] if reasons[0] != reasons[1] else []
-    sides = {"reference": [row["extrapolated"] for row in (before, after)]}
-    sides |= {name: [row["models"][name] for row in (before, after)] for name in before["models"]}
+    sides = ("reference", "band", *MODELS)
     return [
-        f"{before['scene']}, {side}: {name} {value:.6g} -> {now.get(name)}"
-        for side, (was, now) in sides.items()
-        for name, value in was.items()
-        if value is not None and not _is_same(value, now.get(name), before["bands"].get(name))
+        f"{before['scene']}, {side}: {name} {was:.6g} -> {now}"
+        for name, values in before["values"].items()
+        for side, was, now in zip(sides, values, after["values"].get(name, NONE), strict=True)
+        if side != "band" and was is not None and not _is_same(was, now, values[1])
     ]
 
 

@@ -162,23 +162,31 @@ def film(point: Point) -> Table:
     return scene
 
 
-def friction(point: Point) -> Table:
-    """With friction in both contacts, of spheres, which the models leave out."""
-    scene = dry(point)
+def _of_spheres(scene: Table) -> Table:
+    """With spheres of the same mass instead of compact bodies."""
     density = scene["materials"]["bodies"]["density"]
     for body in (scene["outer"], scene["inner"]):
         if body["kind"] == "compact":
             volume = body.pop("mass") / density
             del body["tip_radius"]
             body |= {"kind": "sphere", "radius": (3.0 * volume / (4.0 * math.pi)) ** (1 / 3)}
-    return scene | {"friction": point.log(0.03, 0.5)}
+    return scene
+
+
+def friction(point: Point) -> Table:
+    """With friction in both contacts, of spheres, which the models leave out."""
+    return _of_spheres(dry(point)) | {"friction": point.log(0.03, 0.5)}
 
 
 def relaxing(point: Point) -> Table:
     """The plate or the bodies are viscoelastic."""
     scene = dry(point)
     scene["plate"].pop("damping_ratio", None)
-    scene["materials"][point.one_of("plate", "plate", "bodies")] |= {
+    relaxes = point.one_of("plate", "plate", "bodies")
+    if relaxes == "bodies":
+        # the tip of a compact body is an elastic half-space
+        scene = _of_spheres(scene)
+    scene["materials"][relaxes] |= {
         "loss_factor": point.log(0.003, 0.1),
         "modulus_frequency": 0.5 / _duration(scene),
     }
@@ -203,6 +211,7 @@ def off_centre(point: Point) -> Table:
     """The outer body strikes away from the centre."""
     scene = dry(point)
     plate = scene["plate"]
+    plate.pop("damping_ratio", None)
     plate["radius"] = min(plate["radius"], 20.0 * plate["thickness"])
     scene["outer"]["offset"] = plate["radius"] * point.uniform(0.02, 0.6)
     scene["reference"]["elements_per_contact_radius"] = ELEMENTS / 4.0

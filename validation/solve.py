@@ -63,7 +63,7 @@ def _place(validated: Path) -> Row | None:
 
 def _alone(path: Path, program: Path) -> Row:
     """Summary of model C, by its name; none where it has no form."""
-    command = [program, "reduced", path, "--model", "C", "--json"]
+    command: list[str | Path] = [program, "reduced", path, "--model", "C", "--json"]
     ran = subprocess.run(command, capture_output=True, text=True, check=False)
     return {"C": json.loads(ran.stdout)} if ran.returncode == 0 else {}
 
@@ -92,11 +92,9 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
             "--out",
             f"{folder}/page",
         ]
-        ran = subprocess.run(
-            command, capture_output=True, text=True, check=False, timeout=longest
-        )
+        ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=longest)
         place = _place(Path(folder) / "store" / "validated.jsonl")
-        # off centre, model C makes a mesh of its own, which comparisons of several models do without
+        # comparisons of several models omit model C off the centre: it makes a mesh of its own
         alone = _alone(path, program) if ran.stdout.strip() and "offset" in path.read_text() else {}
     found: Row = {"scene": path.stem, "stratum": path.stem.rsplit("-", 1)[0]}
     if ran.stdout.strip():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -45,19 +46,15 @@ def test_patches_and_contact_times_are_those_drawn() -> None:
 
 def test_what_moves_by_more_than_a_twentieth_of_its_band_is_listed() -> None:
     """Of the reference and of the models; and a scene that is refused now."""
-    before = {
-        "scene": "dry-000",
-        "extrapolated": {"efficiency": 0.5},
-        "bands": {"efficiency": 0.01},
-        "models": {"C": {"efficiency": 0.501, "inner_force_peak": None}},
-    }
+    values: dict[str, list[Any]] = {"efficiency": [0.5, 0.01, None, None, 0.501]}
+    before = {"scene": "dry-000", "values": values}
     assert moved(before, before) == []
-    for side in ("extrapolated", "models"):
+    for place, name in ((0, "reference"), (4, "C")):
         for change, count in ((4e-4, 0), (6e-4, 1)):
-            after = {**before, "extrapolated": {"efficiency": 0.5}}
-            if side == "extrapolated":
-                after["extrapolated"] = {"efficiency": 0.5 + change}
-            else:
-                after["models"] = {"C": {"efficiency": 0.501 - change, "inner_force_peak": None}}
-            assert len(moved(before, after)) == count
+            other = list(values["efficiency"])
+            other[place] += change
+            found = moved(before, {"scene": "dry-000", "values": {"efficiency": other}})
+            assert len(found) == count
+            assert all(name in sentence for sentence in found)
+    assert len(moved(before, {"scene": "dry-000", "values": {}})) == 2
     assert moved(before, {"scene": "dry-000", "refused": "why"}) == ["dry-000: solved -> why"]

@@ -106,8 +106,12 @@ class Solution:
 
     def mesh_report(self) -> dict[str, Any]:
         """For the summary's ``mesh``."""
+        points = sum(body.points.shape[0] for body in self.mesh.bodies)
+        # the rigid part of a compact body, whose tip yields, is one node of many points
+        drawn = {"points": points} if points != self.system.mass.size else {}
         return {
             "nodes": int(self.system.mass.size),
+            **drawn,
             "dofs": self.dofs,
             "elements": sum(body.quads.shape[0] for body in self.mesh.bodies),
             **self.resolution.report(),

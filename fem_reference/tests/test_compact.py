@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
+import meshio
 import numpy as np
 import pytest
 
@@ -203,6 +205,21 @@ def test_light_compact_body_that_yields_keeps_its_mass() -> None:
     assert body.yielded is not None and body.yielded.work[0] > 0.0
     assert body.energy_residual < 1e-5
     assert body.momentum_residual < 1e-9
+
+
+def test_mesh_of_a_tip_that_yields_has_the_points_that_the_summary_counts(tmp_path: Path) -> None:
+    """The rigid part of the body is one node of the system and several points of the mesh."""
+    scene = parse_scene(
+        document(
+            outer={**compact(YIELDS), "speed": 0.55},
+            run__end_time=4e-5,
+            reference__elements_per_contact_radius=3,
+        )
+    )
+    solution = solve_once(scene)
+    solution.write_fields(tmp_path, scene)
+    report = solution.mesh_report()
+    assert meshio.read(tmp_path / "mesh.vtu").points.shape[0] == report["points"] > report["nodes"]
 
 
 def test_elastic_compact_body_dents_a_plate_that_yields() -> None:

@@ -33,12 +33,6 @@ struct Named {
     /// Reduced model, for the studies of figures [default: B, as in the paper]
     #[arg(long)]
     model: Option<Model>,
-    /// Number of random scenes, for the study auto [default: 1000]
-    #[arg(long, value_name = "N")]
-    cases: Option<usize>,
-    /// Seed of the random scenes, for the study auto [default: 3]
-    #[arg(long, value_name = "S")]
-    seed: Option<u64>,
     /// Folder for the results (JSON, CSV, Markdown; figures as SVG and PNG)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -84,11 +78,7 @@ fn named(context: &Context, arguments: &Named) -> Result<ExitStatus> {
             entry.name
         )));
     }
-    let Named { model, cases, seed, .. } = *arguments;
-    if (cases.is_some() || seed.is_some()) && entry.name != "auto" {
-        return Err(Error::Usage(format!("--cases, --seed: the study {} draws no scenes", entry.name)));
-    }
-    let settings = study::Settings { model, store: context.store.clone(), cases, seed };
+    let settings = study::Settings { model: arguments.model, store: context.store.clone() };
     if let Some(folder) = &arguments.out {
         // refused before anything is computed
         report::check_writable(folder)?;

@@ -1,14 +1,12 @@
 //! The validation base: random scenes that references have solved (`make validation`), one a line.
 
 use crate::kinds::Place;
+use crate::scene::Model;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 const TABLE: &str = include_str!("../../validation/base.jsonl");
-/// Place in its table of what model C found.
-const CONTINUUM: &str = "C";
-
 /// A scene of the base that was solved.
 #[derive(Debug, Clone, Deserialize)]
 pub struct SolvedScene {
@@ -24,44 +22,80 @@ pub struct SolvedScene {
     pub place: Option<Place>,
     /// Numbers of the scene that were drawn, by name.
     pub proportions: BTreeMap<String, f64>,
-    /// The reference's quantities in the limit of fine meshes, SI.
-    pub extrapolated: BTreeMap<String, f64>,
-    /// Half widths of their 95 % bands, SI; `None`: not determined.
-    pub bands: BTreeMap<String, Option<f64>>,
-    /// Those of the models, by model; `None`: not determined.
-    models: BTreeMap<String, BTreeMap<String, Option<f64>>>,
+    /// By quantity, SI.
+    pub values: BTreeMap<String, Values>,
+}
+
+/// Values of a quantity, SI, as they stand in the table; `None`: not determined.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(from = "[Option<f64>; 5]")]
+pub struct Values {
+    /// The reference's in the limit of fine meshes.
+    pub reference: Option<f64>,
+    /// Half width of its 95 % band.
+    pub band: Option<f64>,
+    /// Those of models A, B and C.
+    pub models: [Option<f64>; 3],
+}
+
+impl From<[Option<f64>; 5]> for Values {
+    fn from([reference, band, a, b, c]: [Option<f64>; 5]) -> Self {
+        Self { reference, band, models: [a, b, c] }
+    }
 }
 
 impl SolvedScene {
-    /// Model C's value and the reference's, SI, if both have one.
-    pub fn values(&self, quantity: &str) -> Option<[f64; 2]> {
-        let model = *self.models.get(CONTINUUM)?.get(quantity)?;
-        Some([model?, *self.extrapolated.get(quantity)?])
+    /// Value of `model`, SI.
+    pub fn of_model(&self, model: Model, quantity: &str) -> Option<f64> {
+        self.values.get(quantity)?.models[model as usize]
     }
+}
+
+/// A scene of the base that was refused or not solved.
+#[derive(Debug, Clone, Deserialize)]
+pub struct RefusedScene {
+    /// Name of the scene.
+    pub scene: String,
+    /// Group of similar scenes that it was drawn in.
+    pub stratum: String,
+    /// Why.
+    pub refused: String,
 }
 
 /// A line of the table.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum TableLine {
-    /// A scene that was refused or not solved, with the reason.
-    Refused {
-        #[serde(rename = "refused")]
-        _reason: String,
-    },
+    Refused(RefusedScene),
     Solved(SolvedScene),
 }
 
-/// Scenes that were refused or not solved are not among them.
+/// The base.
+#[derive(Debug, Default)]
+struct Base {
+    solved: Vec<SolvedScene>,
+    refused: Vec<RefusedScene>,
+}
+
+static BASE: LazyLock<Base> = LazyLock::new(|| {
+    let mut base = Base::default();
+    for line in TABLE.lines().filter_map(|text| serde_json::from_str(text).ok()) {
+        match line {
+            TableLine::Solved(scene) => base.solved.push(scene),
+            TableLine::Refused(scene) => base.refused.push(scene),
+        }
+    }
+    base
+});
+
+/// The scenes that were solved.
 pub fn solved() -> &'static [SolvedScene] {
-    static SOLVED: LazyLock<Vec<SolvedScene>> = LazyLock::new(|| {
-        let line = |text| match serde_json::from_str(text) {
-            Ok(TableLine::Solved(scene)) => Some(scene),
-            Ok(TableLine::Refused { .. }) | Err(_) => None,
-        };
-        TABLE.lines().filter_map(line).collect()
-    });
-    &SOLVED
+    &BASE.solved
+}
+
+/// The others.
+pub fn refused() -> &'static [RefusedScene] {
+    &BASE.refused
 }
 
 #[cfg(test)]
@@ -71,13 +105,8 @@ mod tests {
     /// No line is passed over because it is not understood.
     #[test]
     fn every_scene_is_solved_or_has_a_reason() {
-        for text in TABLE.lines() {
-            let line: TableLine = serde_json::from_str(text).unwrap();
-            assert!(
-                matches!(&line, TableLine::Refused { _reason } if !_reason.is_empty())
-                    || matches!(line, TableLine::Solved(_))
-            );
-        }
+        assert_eq!(solved().len() + refused().len(), TABLE.lines().count());
         assert!(!solved().is_empty());
+        assert!(refused().iter().all(|scene| !scene.refused.is_empty()));
     }
 }

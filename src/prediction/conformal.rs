@@ -3,6 +3,9 @@
 //! Papadopoulos, Vovk and Gammerman, Regression conformal prediction with nearest neighbours, J. Artificial Intelligence Research
 //! 40 (2011) 815: an error is measured in units of what its neighbours' errors let expect; the quantile of these ratios over all cases,
 //! times what the neighbours of a new case let expect, holds the new error with the stated probability, whatever the errors' distribution.
+//!
+//! Errors are seen through references that have errors of their own. As both are independent, their squares add up: what a reference may
+//! be off by is taken out of the errors that calibrate, and added where new errors are judged.
 
 /// Neighbours that an error is compared with.
 const NEIGHBOURS: usize = 12;
@@ -16,6 +19,20 @@ pub struct SeenError {
     pub place: Vec<f64>,
     /// Magnitude of the error.
     pub error: f64,
+    /// What it was seen with may be off by.
+    pub noise: f64,
+}
+
+impl SeenError {
+    /// The part that is more than noise: both are independent, so that their squares add up.
+    pub fn excess(&self) -> f64 {
+        (self.error.powi(2) - self.noise.powi(2)).max(0.0).sqrt()
+    }
+
+    /// Whether an interval of this `half_width` holds it, but for the noise.
+    pub fn is_within(&self, half_width: f64) -> bool {
+        self.error <= half_width.hypot(self.noise)
+    }
 }
 
 /// Cases from which errors elsewhere are predicted.
@@ -42,8 +59,9 @@ impl<'a> ErrorScale<'a> {
         let spread = (0..cases[0].place.len()).map(|axis| deviation(cases, axis)).collect();
         let mut found =
             Self { cases, spread, least: (LEAST * median(errors)).max(f64::MIN_POSITIVE), quantile: 0.0 };
-        let mut ratios: Vec<f64> =
-            (0..count).map(|own| cases[own].error / found.expected(&cases[own].place, Some(own))).collect();
+        let mut ratios: Vec<f64> = (0..count)
+            .map(|own| cases[own].excess() / found.expected(&cases[own].place, Some(own)))
+            .collect();
         ratios.sort_by(f64::total_cmp);
         found.quantile = ratios[rank - 1];
         Some(found)
@@ -92,6 +110,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     /// Errors whose size grows a hundredfold along the first coordinate, with long tails.
     fn cases(count: usize, seed: u64) -> Vec<SeenError> {
@@ -100,7 +119,7 @@ mod tests {
             let place = vec![random.f64(), random.f64()];
             let size = 10.0_f64.powf(2.0 * place[0] - 4.0);
             let error = size * (-random.f64().ln()).powf(1.3);
-            SeenError { place, error }
+            SeenError { place, error, noise: 0.0 }
         };
         (0..count).map(|_| draw()).collect()
     }
@@ -113,12 +132,33 @@ mod tests {
             let known = cases(100, seed);
             let calibrated = ErrorScale::new(&known, 0.95).unwrap();
             for case in cases(200, 1000 + seed) {
-                within += usize::from(case.error <= calibrated.half_width(&case.place));
+                within += usize::from(case.is_within(calibrated.half_width(&case.place)));
                 all += 1;
             }
         }
         let share = within as f64 / all as f64;
         assert!((0.94..0.965).contains(&share), "{share}");
+    }
+
+    /// Errors of normal distribution, seen with as much noise: intervals are those of the errors alone.
+    #[test]
+    fn noise_is_taken_out() {
+        let (mut within, mut all, mut seed) = (0, 0, 0);
+        while seed < 100 {
+            let mut random = fastrand::Rng::with_seed(seed);
+            let mut normal = || (-2.0 * random.f64().ln()).sqrt() * (TAU * random.f64()).cos();
+            let mut case = || {
+                let (own, noise) = (normal(), normal());
+                (SeenError { place: vec![0.0], error: (own + noise).abs(), noise: 1.96 }, own.abs())
+            };
+            let known: Vec<SeenError> = (0..100).map(|_| case().0).collect();
+            let half = ErrorScale::new(&known, 0.95).unwrap().half_width(&[0.0]);
+            within += (0..100).filter(|_| case().1 <= half).count();
+            all += 100;
+            seed += 1;
+        }
+        let share = within as f64 / all as f64;
+        assert!((0.93..0.97).contains(&share), "{share}");
     }
 
     #[test]

@@ -98,7 +98,8 @@ pub(super) fn load(scene: &Scene, folder: &Path, origin: Origin) -> Result<Store
     }
     if has_mesh {
         let dofs = finest_dofs(&summary).ok_or_else(|| damage(SUMMARY, NO_SERIES.to_owned()))?;
-        check_mesh(folder, dofs).map_err(|reason| damage(MESH, reason))?;
+        let drawn = summary.mesh.as_ref().and_then(|mesh| mesh["points"].as_u64());
+        check_mesh(folder, dofs, drawn).map_err(|reason| damage(MESH, reason))?;
     }
     check_bands(&summary, bands.as_ref()).map_err(|reason| damage(HISTORY, reason))?;
     kind.judge(scene, &mut summary, Some(&history));
@@ -116,8 +117,9 @@ fn finest_dofs(summary: &Summary) -> Option<u64> {
     summary.convergence.as_ref()?["meshes"][0]["dofs"].as_u64()
 }
 
-/// That the mesh, if it is there, has nodes for the `dofs` of the finest one of the series, two or three each.
-fn check_mesh(folder: &Path, dofs: u64) -> Result<(), String> {
+/// That the mesh, if it is there, has nodes for the `dofs` of the finest one of the series, two or three each, or as many as are `drawn`
+/// where a rigid part has several.
+fn check_mesh(folder: &Path, dofs: u64, drawn: Option<u64>) -> Result<(), String> {
     let Ok(file) = std::fs::File::open(folder.join(MESH)) else { return Ok(()) };
     let mut head = Vec::new();
     std::io::Read::read_to_end(&mut std::io::Read::take(file, MESH_HEAD), &mut head)
@@ -126,7 +128,10 @@ fn check_mesh(folder: &Path, dofs: u64) -> Result<(), String> {
     let nodes = head.split_once("NumberOfPoints=\"").and_then(|(_, rest)| rest.split_once('"'));
     let nodes: Option<u64> = nodes.and_then(|(number, _)| number.parse().ok());
     match nodes {
-        Some(nodes) if [2, 3].map(|d| nodes.checked_mul(d)).contains(&Some(dofs)) => Ok(()),
+        Some(nodes) if drawn == Some(nodes) => Ok(()),
+        Some(nodes) if drawn.is_none() && [2, 3].map(|d| nodes.checked_mul(d)).contains(&Some(dofs)) => {
+            Ok(())
+        }
         Some(nodes) => Err(format!("has {nodes} nodes; the solution is of a mesh with {dofs} displacements")),
         None => Err("has no number of nodes".to_owned()),
     }

@@ -15,6 +15,7 @@ mod integrator_runge_kutta;
 mod materials_memory;
 mod materials_yielding;
 mod plate_frequencies_leissa;
+mod plate_waves;
 mod shared_bodies;
 mod squeeze_film;
 mod stack;

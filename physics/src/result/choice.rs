@@ -9,7 +9,7 @@ pub struct CandidateModel {
     pub model: String,
     /// Elastic modes; of model C bending modes alone.
     pub modes: usize,
-    /// Largest estimated relative error of the quantities covered; `None` if there is no estimate.
+    /// Largest predicted relative error of the quantities covered; `None` if there is no prediction.
     pub estimated_error: Option<f64>,
     /// The quantity with that error.
     pub quantity: Option<String>,
@@ -24,13 +24,11 @@ pub struct Choice {
     pub tolerance: f64,
     /// The quantities it covers; the efficiency relative to at least 0.05, the velocity to the impact speed.
     pub covers: Vec<String>,
-    /// The estimate of the model chosen; `None` if there is none.
+    /// The prediction for the model chosen; `None` if there is none.
     pub estimated_error: Option<f64>,
-    /// Share of such promises that is kept on random scenes, at least.
+    /// Probability that the true error is within the estimate.
     pub coverage: f64,
-    /// Part of it that stems from what model C was found to be off by; `None` beyond what was measured.
-    pub floor: Option<f64>,
-    /// Whether the estimate meets the tolerance.
+    /// Whether the prediction is within the tolerance.
     pub met: bool,
     /// The models considered, in the order of their cost.
     pub tried: Vec<CandidateModel>,

@@ -7,8 +7,8 @@ use crate::cli::{Context, progress};
 use crate::curves::CommonAxis;
 use crate::error::{Error, Result};
 use crate::kinds::SharedBodies;
-use crate::kinds::plate_impact::choice;
 use crate::kinds::plate_impact::reduced::Reduced;
+use crate::prediction::auto;
 use crate::reference::Stored;
 use crate::result::Outcome;
 use crate::scene::{Model, Scene};
@@ -51,8 +51,8 @@ impl ReducedModels for Plates {
                         "--modes {modes}: --model auto chooses the number of modes"
                     )));
                 }
-                let tolerance = request.tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
-                (Reduced::auto(scene, tolerance)?, choice::integration_tolerance(tolerance))
+                let tolerance = request.tolerance.unwrap_or(auto::DEFAULT_TOLERANCE);
+                (chosen(scene, tolerance, bodies)?, auto::integration_tolerance(tolerance))
             }
         };
         if curves { reduced.run_with_history(tolerance) } else { reduced.run_judged(tolerance) }
@@ -99,6 +99,18 @@ impl ReducedModels for Plates {
     }
 }
 
+/// The model of `scene` that `auto` chooses for `tolerance`.
+fn chosen(scene: &Scene, tolerance: f64, bodies: &SharedBodies) -> Result<Reduced> {
+    let of = |(model, modes)| {
+        let mut scene = scene.clone();
+        scene.reduced.modes = None;
+        Reduced::in_series(scene, model, modes, bodies)
+    };
+    let run = |candidate| of(candidate)?.run(auto::integration_tolerance(tolerance));
+    let (candidate, choice) = auto::choose(scene, tolerance, run)?;
+    Ok(of(candidate)?.chosen(choice))
+}
+
 /// Those of `models` that have a form for `scene`; `omitted` gets the reasons of the others. All if none has: running them gives the reason.
 fn having(scene: &Scene, models: &[RequestedModel], omitted: impl Fn(&Error)) -> Vec<RequestedModel> {
     let refused = |request: &RequestedModel| match request {
@@ -121,18 +133,18 @@ fn set_up(scene: &Scene, models: &[RequestedModel], tolerance: Option<f64>) -> R
         let start = Instant::now();
         set_up().map(|body| (body, start.elapsed().as_secs_f64()))
     };
-    let mut chosen = None;
+    let mut auto = None;
     if models.contains(&RequestedModel::Auto) {
-        let tolerance = tolerance.unwrap_or(choice::DEFAULT_TOLERANCE);
-        chosen = Some(timed(&|| Reduced::auto(scene, tolerance))?);
+        let tolerance = tolerance.unwrap_or(auto::DEFAULT_TOLERANCE);
+        auto = Some(timed(&|| chosen(scene, tolerance, &SharedBodies::default()))?);
     }
-    let auto = chosen.as_ref().map(|(body, _)| body.model());
+    let named = auto.as_ref().map(|(body, _)| body.model());
     let mut done = Vec::new();
     let mut bodies = Vec::new();
     for request in models {
         match *request {
-            RequestedModel::Auto => bodies.extend(chosen.take()),
-            RequestedModel::Named(model) if auto != Some(model) && !done.contains(&model) => {
+            RequestedModel::Auto => bodies.extend(auto.take()),
+            RequestedModel::Named(model) if named != Some(model) && !done.contains(&model) => {
                 done.push(model);
                 bodies.push(timed(&|| Reduced::new(scene, model, None))?);
             }

@@ -29,10 +29,6 @@ pub struct Settings {
     pub model: Option<Model>,
     /// Folder of the stored references, for studies that look at them; `None` = the usual one.
     pub store: Option<PathBuf>,
-    /// Number of random scenes, for the study that draws some; `None` = its own.
-    pub cases: Option<usize>,
-    /// Seed they are drawn with; `None` = its own.
-    pub seed: Option<u64>,
 }
 
 /// A study that can be asked for by name.

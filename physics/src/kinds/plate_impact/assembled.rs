@@ -43,17 +43,6 @@ pub(super) enum RequestedModes {
     Modes(usize),
     /// As many as the error estimate asks for.
     Estimate,
-    /// All below a frequency.
-    Below(Cut),
-}
-
-/// Which modes of the continuum plate model C is to have.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cut {
-    /// Angular frequency in rad/s below which all modes are kept.
-    pub(super) omega: f64,
-    /// How many that will be at most.
-    pub(super) modes: usize,
 }
 
 /// `plate`, immersed if there is a fluid, between the bodies of the scene.
@@ -214,11 +203,6 @@ fn continuum_plate(
     };
     match requested {
         RequestedModes::Modes(modes) => lowest(&build(modes)?, modes),
-        RequestedModes::Below(cut) => {
-            let plate = build(cut.modes)?;
-            let below = plate.omega.iter().filter(|omega| **omega < cut.omega).count();
-            lowest(&plate, below.clamp(1, cut.modes))
-        }
         RequestedModes::Estimate => {
             let mut most = DEFAULT_MODES;
             loop {

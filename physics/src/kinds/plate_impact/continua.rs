@@ -13,14 +13,9 @@ pub(super) struct Continua<'a> {
 }
 
 impl<'a> Continua<'a> {
-    /// From `shared` as far as it has them, else as [`Self::meshed`].
+    /// From `shared` as far as it has them, else each on a mesh of its own, through `cache`.
     pub(super) fn new(shared: Option<&'a UnitBodies>, cache: &'a Cache) -> Self {
         Self { shared, cache }
-    }
-
-    /// Each on a mesh of its own, through `cache`.
-    pub(super) fn meshed(cache: &'a Cache) -> Self {
-        Self { shared: None, cache }
     }
 
     /// As [`ContinuumPlate::new`] on the default mesh.

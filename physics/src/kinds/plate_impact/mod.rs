@@ -2,8 +2,6 @@
 
 mod assembled;
 mod checks;
-pub mod choice;
-mod closed_form;
 pub mod closed_forms;
 mod continua;
 pub mod errors;

@@ -23,51 +23,38 @@ pub(super) struct Predictor {
     /// Radii in m of the patches over which loads are weighted: Hertz's at the force peaks. The result hardly
     /// depends on them: they are rounded, so that an impact that is a little different finds its bodies in the cache.
     pub(super) patch_radius: [f64; 2],
-    /// Force peaks in N of the outer and the inner contact.
-    pub(super) force_peak: [f64; 2],
     /// Angular frequency in rad/s of the quicker contact, pi over the duration of a half-sine with its impulse and peak.
     contact_frequency: f64,
-    /// Contacts beyond the first of either body.
-    pub(super) repeated_contacts: f64,
 }
 
 impl Predictor {
     pub(super) fn of(system: &System) -> Result<Self> {
         let run = integrate(system, &Options { tolerance: 1e-3, ..Options::default() })?;
         let of = |i: usize| (run.contacts[i].force_peak, run.contacts[i].impulse);
-        let counts = [0, 1].map(|i| run.contacts[i].contacts);
-        Ok(Self::from(system, of(0), (counts[1] > 0).then(|| of(1)), counts))
+        Ok(Self::from(system, of(0), (run.contacts[1].contacts > 0).then(|| of(1))))
     }
 
     /// As [`Predictor::of`], to a few percent where both contacts press alike: patches that are 3 % wider change no force by more than
-    /// 3e-4. A contact that presses much less is known to a half, its patch to a quarter: unless that is below `negligible` m, it takes a
-    /// better look.
-    pub(super) fn rough(system: &System, negligible: f64) -> Result<Self> {
+    /// 3e-4. A contact that presses much less is known to a half, its patch to a quarter: it takes a better look.
+    pub(super) fn rough(system: &System) -> Result<Self> {
         let Some([outer, inner]) = impulse_splitting::run(system) else { return Self::of(system) };
-        let patch = system.laws[1].contact_radius(inner.force_peak);
-        let unknown = inner.force_peak < WEAK * outer.force_peak && patch > negligible;
-        if unknown || inner.force_peak == 0.0 {
+        if inner.force_peak < WEAK * outer.force_peak || inner.force_peak == 0.0 {
             return Self::of(system);
         }
         let of = |contact: SplittingPeak| (contact.force_peak, contact.impulse);
-        Ok(Self::from(system, of(outer), Some(of(inner)), [outer.contacts, inner.contacts]))
+        Ok(Self::from(system, of(outer), Some(of(inner))))
     }
 
-    /// From force peaks in N and impulses in N s, and the number of contacts of either body.
-    fn from(system: &System, outer: (f64, f64), inner: Option<(f64, f64)>, counts: [u32; 2]) -> Self {
+    /// From force peaks in N and impulses in N s.
+    fn from(system: &System, outer: (f64, f64), inner: Option<(f64, f64)>) -> Self {
         let of = |i: usize, (peak, impulse): (f64, f64)| {
-            (rounded(system.laws[i].contact_radius(peak)), 2.0 * peak / impulse, peak)
+            (rounded(system.laws[i].contact_radius(peak)), 2.0 * peak / impulse)
         };
         let outer = of(0, outer);
         // an inner body that is never reached takes the outer one's patch, as far as it is wide enough for it
         let widest = NEVER_REACHED * system.laws[1].tip_radius;
-        let inner = inner.map_or((outer.0.min(widest), outer.1, outer.2), |inner| of(1, inner));
-        Self {
-            patch_radius: [outer.0, inner.0],
-            force_peak: [outer.2, inner.2],
-            contact_frequency: outer.1.max(inner.1),
-            repeated_contacts: counts.map(|count| f64::from(count.saturating_sub(1))).iter().sum(),
-        }
+        let inner = inner.map_or((outer.0.min(widest), outer.1), |inner| of(1, inner));
+        Self { patch_radius: [outer.0, inner.0], contact_frequency: outer.1.max(inner.1) }
     }
 
     /// Radii in m of the patches that model C meshes `plate` for.

@@ -2,12 +2,7 @@
 
 mod run;
 
-use super::assembled::{
-    Assembled, RequestedModes, continuum, kirchhoff, kirchhoff_plate, off_centre_continuum,
-};
-use super::choice::ChoicePlan;
-use super::closed_form;
-use super::continua::Continua;
+use super::assembled::{Assembled, RequestedModes, continuum, kirchhoff, off_centre_continuum};
 use super::results::PlateQuantities;
 use super::shared::SharedBodies;
 use super::{MAX_MODES, PlateImpact};
@@ -66,7 +61,7 @@ impl Reduced {
         bodies: &SharedBodies,
     ) -> Result<Self> {
         let setup = &*scene.plate_impact()?.along_normal();
-        require_covered(setup, Some(model))?;
+        require_covered(setup, model)?;
         let modes = match (model, modes) {
             (Model::A, None | Some(1)) => Some(1),
             (Model::A, Some(n)) => {
@@ -85,7 +80,7 @@ impl Reduced {
             }
             Model::C if setup.outer.offset > 0.0 => {
                 let (built, coarse) = off_centre_continuum(setup, modes)?;
-                return Ok(Self { coarse, ..Self::of(built, model, scene, None)? });
+                return Ok(Self { coarse, ..Self::of(built, model, scene)? });
             }
             Model::C => {
                 let predictor = bodies.predictor(setup)?;
@@ -93,7 +88,7 @@ impl Reduced {
                 continuum(setup, requested, &predictor, bodies.continua())?
             }
         };
-        Self::of(built, model, scene, None)
+        Self::of(built, model, scene)
     }
 
     /// As [`Reduced::new`] with the bodies of model C from `cache`.
@@ -104,68 +99,21 @@ impl Reduced {
         Self::in_series(scene.clone(), model, modes, &SharedBodies::meshed(cache.clone()))
     }
 
-    /// The cheapest model and number of modes whose estimated error meets `tolerance`, or what comes nearest; see
-    /// [`Choice`]. The tolerance covers [`super::errors::COVERED`].
-    ///
-    /// # Errors
-    /// [`Error::Scene`] if the scene is no plate impact, [`Error::Solver`] for what no reduced model covers.
-    pub fn auto(scene: &Scene, tolerance: f64) -> Result<Self> {
-        Self::auto_in(scene, tolerance, &Cache::from_environment())
-    }
-
-    /// As [`Reduced::auto`] with the bodies of model C from `cache`.
-    ///
-    /// # Errors
-    /// As [`Reduced::auto`].
-    pub fn auto_in(scene: &Scene, tolerance: f64, cache: &Cache) -> Result<Self> {
-        let setup = &*scene.plate_impact()?.along_normal();
-        require_covered(setup, None)?;
-        let normal = Scene { setup: setup.clone().into(), ..scene.clone() };
-        if let Some((built, choice)) = closed_form::choose(setup, tolerance, scene.run.end_time)? {
-            return Self::of(built, Model::C, scene.clone(), Some(choice));
-        }
-        let mut plan = ChoicePlan::new(&normal, tolerance)?;
-        let mut continua: Option<Assembled> = plan.closed_form.then(|| plan.trials.closed_form(plan.modes));
-        while let Some(cut) = plan.cut {
-            match continuum(
-                setup,
-                RequestedModes::Below(cut),
-                &plan.trials.predictor,
-                Continua::meshed(cache),
-            ) {
-                Ok(built) => {
-                    plan.judge(&built.system, built.omega_next);
-                    continua = Some(built);
-                }
-                Err(error) if continua.is_none() => plan.without_continuum(error)?,
-                Err(_) => break,
-            }
-        }
-        let kirchhoff = || {
-            let waves = &plan.trials.waves;
-            let shapes = |radii: &[f64]| Ok(waves.shapes(plan.modes, radii));
-            kirchhoff_plate(setup, waves.kirchhoff(plan.modes), shapes)
-        };
-        let built = continua.map_or_else(kirchhoff, Ok)?;
-        Self::of(built, plan.model, scene.clone(), Some(plan.choice()))
-    }
-
-    fn of(built: Assembled, model: Model, scene: Scene, choice: Option<Choice>) -> Result<Self> {
-        let Assembled { mut system, omega_next, fluid, mut warnings } = built;
+    fn of(built: Assembled, model: Model, scene: Scene) -> Result<Self> {
+        let Assembled { mut system, omega_next, fluid, warnings } = built;
         let memory = scene.plate_impact()?.memory(&system)?;
-        let choice = choice.map(|choice| match memory {
-            Some(_) => Choice {
-                met: false,
-                reason: format!("{}; for elastic materials, which these are not", choice.reason),
-                ..choice
-            },
-            None => choice,
-        });
-        warnings.extend(choice.iter().filter(|choice| !choice.met).map(|choice| choice.reason.clone()));
         if let Some(memory) = &memory {
             system.first_frequency = memory.frequency(system.first_frequency);
         }
-        Ok(Self { model, system, omega_next, fluid, memory, warnings, coarse: None, choice, scene })
+        Ok(Self { model, system, omega_next, fluid, memory, warnings, coarse: None, choice: None, scene })
+    }
+
+    /// With the reason why it was chosen, and a warning where it does not meet the tolerance.
+    #[must_use]
+    pub fn chosen(mut self, choice: Choice) -> Self {
+        self.warnings.extend((!choice.met).then(|| choice.reason.clone()));
+        self.choice = Some(choice);
+        self
     }
 
     /// Refuses a `model` that has no form for impacts like that of `scene`, or one that has to be requested alone because it makes a mesh,
@@ -175,7 +123,7 @@ impl Reduced {
     /// [`Error::Solver`] with the reason, [`Error::Scene`] if the scene is no plate impact.
     pub fn require(scene: &Scene, model: Model) -> Result<()> {
         let setup = scene.plate_impact()?;
-        require_covered(setup, Some(model))?;
+        require_covered(setup, model)?;
         match model == Model::C && setup.outer.offset > 0.0 {
             true => Err(Error::Solver(format!(
                 "`outer.offset` is {} m: model C makes a mesh of the plate, which needs gmsh; request it alone",
@@ -201,14 +149,13 @@ impl Reduced {
     }
 }
 
-/// Refuses what `model`, or the one that is to be chosen, does not have.
-fn require_covered(setup: &PlateImpact, model: Option<Model>) -> Result<()> {
+/// Refuses what `model` does not have.
+fn require_covered(setup: &PlateImpact, model: Model) -> Result<()> {
     let (Outer { offset, .. }, edge) = (&setup.outer, setup.plate.edge);
     let covers = match model {
-        None => false,
         // supports that leave motions in the plane are not those of a body from a mesh
-        Some(Model::C) => edge != Edge::SimplySupported,
-        Some(Model::A | Model::B) => edge != Edge::Free,
+        Model::C => edge != Edge::SimplySupported,
+        Model::A | Model::B => edge != Edge::Free,
     };
     if *offset == 0.0 || covers {
         return Ok(());

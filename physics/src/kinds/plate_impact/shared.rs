@@ -69,7 +69,7 @@ impl SharedBodies {
             return Predictor::of(&kirchhoff_system(setup, DEFAULT_MODES, &self.kirchhoff)?);
         }
         let plate = self.kirchhoff.initial_modes(&setup.plate, DEFAULT_MODES)?;
-        Predictor::rough(&join(setup, plate, [0.0; 2])?, 0.0)
+        Predictor::rough(&join(setup, plate, [0.0; 2])?)
     }
 
     /// The bodies of model C.

@@ -5,12 +5,10 @@
 //! costs as much as a run of models A and B.
 
 use super::PlateImpact;
-use super::assembled::{Assembled, Cut, fluid_forces};
-use super::closed_form;
+use super::assembled::fluid_forces;
 use super::errors::largest_error;
 use super::predictor::Predictor;
 use super::results::{PlateQuantities, quantities};
-use super::validity;
 use crate::analytical::circular_plate::rigidity;
 use crate::body::continuum::ContinuumPlate;
 use crate::body::layer::Waves;
@@ -32,11 +30,8 @@ const SAFETY: f64 = 1.15;
 /// Part of (contact frequency / lowest frequency left out)^2 that a truncated series of continuum modes may be off by beyond
 /// what the layer, which has no longitudinal modes, tells.
 const TRUNCATION_SHARE: f64 = 0.1;
-
-/// Gap of an inner body, over its own, that the layer has to miss for the continuum to miss it for sure.
-const NEARER: f64 = 0.5;
 /// What half-spaces yield beyond half-spaces: `tips` of models A and B, m/N.
-pub(super) const HALF_SPACES: [f64; 2] = [0.0; 2];
+const HALF_SPACES: [f64; 2] = [0.0; 2];
 
 /// What a model lacks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,15 +62,15 @@ impl TruncationError {
 
 /// The bodies of a scene in closed form.
 pub(super) struct Trials<'a> {
-    pub(super) setup: &'a PlateImpact,
+    setup: &'a PlateImpact,
     bodies: [MovingBody; 2],
     /// Kirchhoff's plate.
     pub(super) waves: Waves,
     layer: ContinuumPlate,
     pub(super) predictor: Predictor,
-    pub(super) options: Options,
+    options: Options,
     /// What the spheres yield beyond half-spaces, m/N.
-    pub(super) tips: [f64; 2],
+    tips: [f64; 2],
 }
 
 impl<'a> Trials<'a> {
@@ -103,19 +98,19 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// Models A and B, whose bodies are [`HALF_SPACES`] to the contacts; or the same with ones that yield by `tips` m/N more.
-    pub(super) fn kirchhoff(&self, modes: usize, tips: [f64; 2]) -> Result<PlateQuantities> {
-        self.run(self.waves.kirchhoff(modes), modes, tips)
+    /// Models A and B.
+    pub(super) fn kirchhoff(&self, modes: usize) -> Result<PlateQuantities> {
+        self.integrate(&self.half_spaces(modes), modes)
     }
 
     /// [`Self::kirchhoff`] with all modes: what is beyond those there are yields as under a static force, the sum of
     /// (w(0)/omega)^2 over k with w(0)^2 = k/2 and omega = k^2 in the plate's units, pi apart.
-    pub(super) fn converged(&self, tips: [f64; 2]) -> Result<PlateQuantities> {
+    pub(super) fn converged(&self) -> Result<PlateQuantities> {
         let modes = self.waves.modes();
         let plate = &self.setup.plate;
         let bending = rigidity(plate.material.youngs_modulus, plate.material.poisson_ratio, plate.thickness);
         let rest = plate.radius.powi(2) / (4.0 * PI * self.waves.cut().powi(2) * bending);
-        let system = system(self.setup, &self.bodies, self.waves.kirchhoff(modes), tips);
+        let system = self.half_spaces(modes);
         // the inner contact closes when the plate moves down
         self.integrate(&system.softer([rest, -rest, rest]), modes)
     }
@@ -125,36 +120,15 @@ impl<'a> Trials<'a> {
         self.integrate(&self.layered(modes), modes)
     }
 
-    /// Whether the layer with all its modes would reach an inner body [`NEARER`].
-    pub(super) fn nearly_reach(&self) -> Result<bool> {
-        let modes = self.waves.modes();
-        let mut system = self.layered(modes);
-        system.gap[1] *= NEARER;
-        Ok(self.integrate(&system, modes)?.inner_force_peak > 0.0)
-    }
-
-    /// [`Self::continuum`] with all modes, as far off as it may be itself.
-    pub(super) fn misshapen(&self) -> Result<PlateQuantities> {
-        let modes = self.waves.modes();
-        let plate = self.layer.modal_body(modes, self.predictor.slow());
-        self.run(closed_form::misshapen(plate, &self.setup.plate), modes, self.tips)
-    }
-
-    /// [`Self::continuum`], ready to run, of a dry impact.
-    pub(super) fn closed_form(&self, modes: usize) -> Assembled {
-        let system = self.layered(modes);
-        let warnings = validity::warnings(self.setup.plate.thickness, self.predictor.patch_radius, &system);
-        Assembled { system, omega_next: self.layer.omega_next(modes), fluid: None, warnings }
-    }
-
     /// The layer with `modes` bending modes between the spheres.
     fn layered(&self, modes: usize) -> System {
         let plate = self.layer.modal_body(modes, self.predictor.slow());
         system(self.setup, &self.bodies, plate, self.tips)
     }
 
-    fn run(&self, plate: ModalBody, modes: usize, tips: [f64; 2]) -> Result<PlateQuantities> {
-        self.integrate(&system(self.setup, &self.bodies, plate, tips), modes)
+    /// Kirchhoff's plate with `modes` modes between bodies that are half-spaces to the contacts.
+    fn half_spaces(&self, modes: usize) -> System {
+        system(self.setup, &self.bodies, self.waves.kirchhoff(modes), HALF_SPACES)
     }
 
     fn integrate(&self, system: &System, modes: usize) -> Result<PlateQuantities> {
@@ -179,30 +153,6 @@ impl<'a> Trials<'a> {
             }
             _ => TruncationError { error: alone, quantity: None },
         }
-    }
-
-    /// Share of the static flexibility at the contacts that Kirchhoff's plate with `modes` modes leaves out, the contacts' own at
-    /// their force peaks being one.
-    pub(super) fn omitted(&self, modes: usize) -> f64 {
-        let plate = self.waves.kirchhoff(self.waves.modes());
-        let rigid = plate.omega.iter().filter(|omega| **omega == 0.0).count();
-        let modal = plate.omega.iter().zip(&plate.participation).skip(rigid + modes);
-        let flexibility: f64 = modal.map(|(omega, phi)| (phi[0] / omega).powi(2)).sum();
-        let system = system(self.setup, &self.bodies, plate.clone(), HALF_SPACES);
-        let of = |i: usize| {
-            let force = self.predictor.force_peak[i];
-            flexibility * force / system.laws[i].approach(force)
-        };
-        of(0).max(of(1))
-    }
-
-    /// The frequency between bending mode `modes` and the next, and how many modes of any kind there are below.
-    pub(super) fn cut(&self, modes: usize) -> Cut {
-        let omega = 0.5 * (self.layer.omega[modes - 1] + self.layer.omega_next(modes));
-        let material = &self.setup.plate.material;
-        let stretching = (material.plane_strain_modulus() / material.density).sqrt();
-        let longitudinal = omega * self.setup.plate.radius / (PI * stretching) + 1.0;
-        Cut { omega, modes: modes + longitudinal as usize }
     }
 }
 

@@ -7,7 +7,7 @@
 use super::assembled::off_centre_system;
 use super::errors::estimated_percent;
 use super::results::quantities;
-use super::trials::{HALF_SPACES, RUNGS, Trials, TruncationError};
+use super::trials::{RUNGS, Trials, TruncationError};
 use super::{MAX_MODES, PlateImpact};
 use crate::body::off_centre;
 use crate::dynamics::integration::Options;
@@ -71,13 +71,13 @@ pub(super) fn estimate(
     let resolution = RESOLUTION[usize::from(model < Model::C)];
     let trials = Trials::new(&dry, resolution, options)?;
     let converged = match model {
-        Model::A | Model::B => trials.converged(HALF_SPACES),
+        Model::A | Model::B => trials.converged(),
         Model::C => trials.continuum(trials.waves.modes()),
     }
     .ok();
     let of = |modes: usize| match (model, &converged) {
         (Model::C, layer) => trials.truncated(modes, layer.as_ref()),
-        (_, Some(all)) => match trials.kirchhoff(modes, HALF_SPACES) {
+        (_, Some(all)) => match trials.kirchhoff(modes) {
             Ok(ours) => TruncationError::between(&ours, all, setup.outer.speed),
             Err(_) => TruncationError { error: trials.truncation(modes), quantity: None },
         },

@@ -14,27 +14,14 @@
 use crate::dynamics::system::System;
 use crate::scene::Model;
 
-/// Patch radius over the plate's thickness, and the error of the force peaks found up to it.
-const MEASURED: [(f64, f64); 2] = [(0.46, 0.0022), (1.05, 0.01)];
+/// Widest patch radius over the plate's thickness that was measured, and the error of the force peaks found up to it.
+const MEASURED: (f64, f64) = (1.05, 0.01);
 /// Share of the film's loss that is too much: the film of the models knows no dents of plate and inner body.
 const FILM_EXCESS: f64 = 0.25;
 /// Error of the efficiency by it that is reported.
 const FILM_ERROR: f64 = 0.01;
 /// Share of the patch that the contacts have to be able to exceed before they become punches.
 const REACH: f64 = 1.2;
-
-/// Relative error of the force peaks that model C was found to have with contact patches of the radii `patch` in m on a plate of
-/// `thickness` m, linear between what was measured; `None` beyond.
-pub(super) fn measured_error(patch: [f64; 2], thickness: f64) -> Option<f64> {
-    let ratio = patch[0].max(patch[1]) / thickness;
-    if ratio <= MEASURED[0].0 {
-        return Some(MEASURED[0].1);
-    }
-    MEASURED.windows(2).find(|pair| ratio <= pair[1].0).map(|pair| {
-        let [(from, low), (to, high)] = [pair[0], pair[1]];
-        low + (high - low) * (ratio - from) / (to - from)
-    })
-}
 
 /// What a user has to know of a squeeze film that dissipates `loss` J in an impact of `system`.
 ///
@@ -56,7 +43,7 @@ pub(in crate::kinds) fn warnings(thickness: f64, patch: [f64; 2], system: &Syste
     let mut warnings = Vec::new();
     let widest_patch = patch[0].max(patch[1]);
     let ratio = widest_patch / thickness;
-    let (widest, error) = MEASURED[MEASURED.len() - 1];
+    let (widest, error) = MEASURED;
     if ratio > widest {
         warnings.push(format!(
             "model {}: the contact patch (radius {:.3} mm) is {ratio:.2} times as wide as the plate is thick ({:.3} mm); force peaks are within {:.0} % of the reference up to {widest} and unknown beyond: compare with the reference before relying on them",

@@ -1,6 +1,8 @@
 //! The studies, by the kind of scene they are about.
 
+pub mod auto;
 pub mod plate_impact;
+pub mod prediction;
 pub mod seal_seat;
 pub mod valve;
 
@@ -10,7 +12,7 @@ pub use seal_seat::*;
 use super::Entry;
 
 /// All studies there are.
-pub const STUDIES: [Entry; 19] = [
+pub const STUDIES: [Entry; 20] = [
     Entry::new("table2", |_, note| table2::run(note), "Table 2: first and first longitudinal eigenfrequency from plate to rod"),
     Entry::new("fig14", fig14::run, "Fig. 14: efficiency over Young's modulus of plate and spheres")
         .panels(&fig14::PANELS).with_models(),
@@ -23,8 +25,9 @@ pub const STUDIES: [Entry; 19] = [
     Entry::new("half-period", half_period::run, "Section 4.1: best when the contact lasts half the plate's first period")
         .panels(&half_period::PANELS).with_models(),
     Entry::new("insensitivity", |_, note| insensitivity::run(note), "Model C with other numbers of modes, patch radii and meshes, both scenes of Table 1"),
-    Entry::new("auto", auto::run, "The models that `auto` chooses: estimated against true error, and their cost")
-        .drawn(auto::figure),
+    Entry::new("prediction", |_, note| prediction::run(note), "Prediction intervals on the validation base: how many hold, how wide they are, where model C is worst")
+        .drawn(prediction::figure),
+    Entry::new("auto", |_, note| auto::run(note), "The models that `auto` chooses on the validation base: predicted against true error"),
     Entry::new("actuators", actuators::run, "Section 2.2: energy of the inner sphere over the gap, from stack, bender and lift magnet")
         .panels(&actuators::PANELS).with_models(),
     Entry::new("rocker", |_, note| rocker::run(note), "Section 4.3: membrane between sapphire spheres, and struck by a piezo bender")

@@ -1,7 +1,6 @@
 //! Studies of plate impacts.
 
 pub mod actuators;
-pub mod auto;
 pub mod damping;
 pub mod fig14;
 pub mod fig15;

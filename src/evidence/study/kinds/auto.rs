@@ -1,0 +1,77 @@
+//! The choices of `auto` on the validation base: predicted against true errors. One half of each group of scenes predicts the other one.
+
+use crate::error::Result;
+use crate::evidence::study::{Cell, Claim, Note, Study};
+use crate::prediction::auto::{COVERED, Judge};
+use crate::prediction::held_out::{HeldOut, held_out};
+use crate::prediction::{LEVEL, error};
+use crate::scene::Model;
+use std::collections::BTreeMap;
+
+/// Tolerances of the study.
+pub const TOLERANCES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
+const COLUMNS: &str = "scene, group, tolerance, model, predicted_error, true_error, met, kept";
+/// Share of choices whose error exceeds the tolerance, at most: the level, and what chance adds.
+const BROKEN: f64 = 1.0 - LEVEL + 0.02;
+
+/// The study.
+///
+/// # Errors
+/// None.
+pub fn run(_: &mut Note) -> Result<Study> {
+    let held = held_out();
+    let rows: Vec<Vec<Cell>> =
+        TOLERANCES.iter().flat_map(|tolerance| held.iter().map(|held| row(held, *tolerance))).collect();
+    let claims = TOLERANCES.iter().map(|tolerance| claim(*tolerance, &rows)).collect();
+    let description = format!(
+        "The model that auto chooses of A, B (16 modes) and C on {} random scenes of the validation base, from the errors in the other half \
+         of their group. met = 1: the predicted error is within the tolerance. true_error: the largest of {} against the finite-element reference, \
+         beyond what that may be off by itself.",
+        held.len(),
+        COVERED.join(", ")
+    );
+    Ok(Study::new("auto", description, COLUMNS, rows, claims))
+}
+
+fn row(held: &HeldOut, tolerance: f64) -> Vec<Cell> {
+    let scene = held.scene;
+    let exact = |name: &str| scene.of_model(Model::C, name);
+    let own: BTreeMap<&'static str, f64> =
+        held.quantities.iter().map(|(name, judged)| (*name, judged.half_width)).collect();
+    let judge = Judge { exact: &exact, own: &own, speed: scene.speed };
+    let predicted = |model: Model| judge.largest(|name| scene.of_model(model, name)).map(|(error, _)| error);
+    let meets = |model: &Model| predicted(*model).is_some_and(|error| error <= tolerance);
+    let model = [Model::A, Model::B].into_iter().find(meets).unwrap_or(Model::C);
+    let met = meets(&model);
+    let seen = COVERED.iter().map(|name| Some(error(scene, model, name)?.1));
+    let off: Option<f64> =
+        seen.map(|seen| Some(seen?.excess())).try_fold(0.0, |largest, error| Some(f64::max(largest, error?)));
+    let kept = off.filter(|_| met).map(|off| usize::from(off <= tolerance));
+    vec![
+        Cell::Text(&scene.scene),
+        Cell::Text(&scene.stratum),
+        tolerance.into(),
+        Cell::Text(match model {
+            Model::A => "A",
+            Model::B => "B",
+            Model::C => "C",
+        }),
+        predicted(model).into(),
+        off.into(),
+        usize::from(met).into(),
+        kept.into(),
+    ]
+}
+
+fn claim(tolerance: f64, rows: &[Vec<Cell>]) -> Claim {
+    let own: Vec<&Vec<Cell>> = rows.iter().filter(|row| row[2] == Cell::Number(tolerance)).collect();
+    let of = |cell: usize, value: usize| own.iter().filter(|row| row[cell] == Cell::Count(value)).count();
+    let simpler = own.iter().filter(|row| row[6] == Cell::Count(1) && row[3] != Cell::Text("C")).count();
+    let (broken, decided) = (of(7, 0), of(7, 0) + of(7, 1));
+    let text = format!(
+        "{} %: share of choices that are not within the tolerance, of {decided} that are predicted to be ({simpler} of them models A or B; {} scenes)",
+        100.0 * tolerance,
+        own.len()
+    );
+    Claim::new(text, "1", None, (decided > 0).then(|| broken as f64 / decided as f64), BROKEN)
+}

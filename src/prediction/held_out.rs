@@ -1,0 +1,115 @@
+//! How true the intervals are: one half of each group of the base predicts the other one, both ways.
+
+use super::base::{SolvedScene, solved};
+use super::conformal::{ErrorScale, SeenError};
+use super::{LEVEL, error, errors};
+use crate::scene::Model;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Fewest scenes of a group whose halves are judged: each has the 19 that an interval of 95 % needs.
+const HALVES: usize = 40;
+
+/// A quantity of a solved scene, with the interval that the other half of its group gives it.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// Half width of the interval of model C, relative as [`super::scale`] has it.
+    pub half_width: f64,
+    /// Signed error of model C.
+    pub signed: f64,
+    /// Its magnitude.
+    pub seen: SeenError,
+}
+
+impl Judged {
+    /// Whether the interval holds the reference's value, but for what that may be off by itself.
+    pub fn is_within(&self) -> bool {
+        self.seen.is_within(self.half_width)
+    }
+}
+
+/// A solved scene with its quantities that the other half of its group predicts.
+#[derive(Debug)]
+pub struct HeldOut {
+    /// The scene.
+    pub scene: &'static SolvedScene,
+    /// By name.
+    pub quantities: BTreeMap<&'static str, Judged>,
+}
+
+/// The groups of the base with solved scenes.
+pub fn strata() -> BTreeSet<&'static str> {
+    solved().iter().map(|scene| scene.stratum.as_str()).collect()
+}
+
+/// The scenes of all groups that are large enough to be halved.
+pub fn held_out() -> Vec<HeldOut> {
+    strata().into_iter().flat_map(of_stratum).collect()
+}
+
+fn of_stratum(stratum: &str) -> Vec<HeldOut> {
+    let all: Vec<&'static SolvedScene> = solved().iter().filter(|scene| scene.stratum == stratum).collect();
+    if all.len() < HALVES {
+        return Vec::new();
+    }
+    let half = |odd: usize| all.iter().skip(odd).step_by(2).copied();
+    (0..2)
+        .flat_map(|odd| {
+            let calibrates: Vec<&SolvedScene> = half(1 - odd).collect();
+            let mut found: Vec<HeldOut> =
+                half(odd).map(|scene| HeldOut { scene, quantities: BTreeMap::new() }).collect();
+            for quantity in all[0].values.keys() {
+                let known = errors(&calibrates, quantity);
+                let Some(calibrated) = ErrorScale::new(&known, LEVEL) else { continue };
+                for held in &mut found {
+                    let Some((signed, seen)) = error(held.scene, Model::C, quantity) else { continue };
+                    let half_width = calibrated.half_width(&seen.place);
+                    held.quantities.insert(quantity, Judged { half_width, signed, seen });
+                }
+            }
+            found
+        })
+        .collect()
+}
+
+/// Largest and smallest count of `within` out of `count` that the level lets expect in 95 of 100 cases.
+pub fn expected(count: usize) -> [usize; 2] {
+    let chances = binomial(count, LEVEL);
+    let mut tail = 0.0;
+    let low = chances.iter().position(|chance| {
+        tail += chance;
+        tail > 0.025
+    });
+    let mut tail = 0.0;
+    let high = chances.iter().rposition(|chance| {
+        tail += chance;
+        tail > 0.025
+    });
+    [low.unwrap_or(0), high.unwrap_or(count)]
+}
+
+/// Probability of each number of successes. Shape (count + 1).
+fn binomial(count: usize, probability: f64) -> Vec<f64> {
+    let mut chances = vec![1.0];
+    for _ in 0..count {
+        let mut next = vec![0.0; chances.len() + 1];
+        for (k, chance) in chances.iter().enumerate() {
+            next[k] += chance * (1.0 - probability);
+            next[k + 1] += chance * probability;
+        }
+        chances = next;
+    }
+    chances
+}
+
+#[cfg(test)]
+mod tests {
+    use super::expected;
+
+    /// Tables of the binomial distribution: P(X <= 17 of 20) = 0.0755, P(X <= 16) = 0.0159; P(20) = 0.358.
+    #[test]
+    fn counts_are_those_of_the_binomial_distribution() {
+        assert_eq!(expected(20), [17, 20]);
+        // mean 95, standard deviation 2.18
+        assert_eq!(expected(100), [90, 99]);
+    }
+}
