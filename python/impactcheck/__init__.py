@@ -58,12 +58,13 @@ def reduced(
         tolerance: Relative error: of the time integration, of auto that of the results.
 
     Returns:
-        Summary and curves.
+        Summary and curves. `prediction` has for each quantity the interval (`low` to `high`) that
+        holds what a reference would find with 95 %; or it is None, and `prediction_reason` says why.
 
     Raises:
         Error: If the model fails, or is none of the scene's.
     """
-    return Result.of(*_core.reduced([scene], model, modes, tolerance, None)[0])
+    return Result.of(*_core.predicted(scene, model, modes, tolerance))
 
 
 def sweep(
@@ -75,7 +76,7 @@ def sweep(
 ) -> list[Result]:
     """Run a reduced model of many scenes side by side, in their order.
 
-    Each result is what :func:`reduced` gives; plates that were solved once serve all of the same
+    Each result is what :func:`reduced` gives, without `prediction`; plates that were solved once serve all of the same
     shape. More than some ten thousands fill the memory with curves: `impactcheck study sweep`
     keeps the quantities alone, in files, and goes on where it was ended.
 

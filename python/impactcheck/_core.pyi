@@ -56,6 +56,9 @@ class Samples:
 
 _Run = tuple[str, list[tuple[str, Samples]]]
 
+def predicted(
+    scene: Scene, model: str | None, modes: int | None, tolerance: float | None
+) -> _Run: ...
 def reduced(
     scenes: list[Scene],
     model: str | None,

@@ -10,10 +10,10 @@ mod samples;
 mod scene;
 
 use detached::detached;
-use impactcheck::cli::in_process::{self, Comparing, ModelRequest, RequestedModel};
+use impactcheck::cli::in_process::{self, Comparing, ModelRequest, PredictedSummary, RequestedModel};
 use impactcheck::interrupt;
 use impactcheck::kinds::SharedBodies;
-use impactcheck::result::Outcome;
+use impactcheck::result::{History, Outcome};
 use impactcheck::{Error, Result, cli, project, reference};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -48,9 +48,35 @@ fn json(document: &impl Serialize) -> PyResult<String> {
 type Run = (String, Vec<(&'static str, Samples)>);
 
 fn run(outcome: Outcome) -> PyResult<Run> {
-    let curves = outcome.history.curves.into_iter().map(|curve| (curve.name, Samples(curve.values)));
-    let time = ("time", Samples(outcome.history.time));
-    Ok((json(&outcome.summary)?, std::iter::once(time).chain(curves).collect()))
+    let summary = json(&outcome.summary)?;
+    Ok((summary, curves(outcome.history)))
+}
+
+fn curves(history: History) -> Vec<(&'static str, Samples)> {
+    let curves = history.curves.into_iter().map(|curve| (curve.name, Samples(curve.values)));
+    let time = ("time", Samples(history.time));
+    std::iter::once(time).chain(curves).collect()
+}
+
+/// Runs a reduced model of a scene, with what a reference would find.
+#[pyfunction]
+fn predicted(
+    py: Python,
+    scene: &Scene,
+    model: Option<&str>,
+    modes: Option<usize>,
+    tolerance: Option<f64>,
+) -> PyResult<Run> {
+    let model = model.map(RequestedModel::from_str).transpose().map_err(usage)?;
+    let request = ModelRequest { model, modes, tolerance, mesh: None };
+    let solve = || {
+        let outcome = in_process::reduced(&scene.scene, &request, &SharedBodies::default())?;
+        let prediction = in_process::predicted(&scene.scene, &request, &outcome.summary);
+        Ok((outcome, prediction))
+    };
+    let (outcome, prediction) = detached(py, || (), solve)?.map_err(raised)?;
+    let summary = json(&PredictedSummary::of(&outcome.summary, &prediction))?;
+    Ok((summary, curves(outcome.history)))
 }
 
 /// Runs a reduced model of every scene, side by side in so many `threads` (those of the machine if it is none).
@@ -149,6 +175,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     }
     module.add_class::<Scene>()?;
     module.add_class::<Samples>()?;
+    module.add_function(wrap_pyfunction!(predicted, module)?)?;
     module.add_function(wrap_pyfunction!(reduced, module)?)?;
     module.add_function(wrap_pyfunction!(find_reference, module)?)?;
     module.add_function(wrap_pyfunction!(compare, module)?)?;

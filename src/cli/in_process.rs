@@ -1,6 +1,7 @@
 //! What the commands compute, for programs that hold scenes in memory, as the Python package does: the same models, defaults,
 //! bounds and sentences; nothing is printed.
 
+pub use super::predicted::PredictedSummary;
 pub use super::requested_model::ModelRequest;
 pub use super::requested_model::RequestedModel;
 
@@ -15,9 +16,10 @@ use crate::error::{Error, Result};
 use crate::kinds::SharedBodies;
 use crate::measured::Speed;
 use crate::optimise::Watch;
+use crate::prediction::Prediction;
 use crate::reference::Resolution;
 use crate::report::{self, Theme};
-use crate::result::Outcome;
+use crate::result::{Outcome, Summary};
 use crate::scene::{Scene, Template};
 use clap::Args;
 use std::path::PathBuf;
@@ -33,6 +35,11 @@ pub fn reduced(scene: &Scene, request: &ModelRequest, bodies: &SharedBodies) -> 
         within_bounds(tolerance, &format!("tolerance {tolerance}")).map_err(Error::Usage)?;
     }
     kinds::of(scene).reduced(&QUIET, scene, request, bodies, true)
+}
+
+/// What a reference of `scene` would find, whose model has the `summary`.
+pub fn predicted(scene: &Scene, request: &ModelRequest, summary: &Summary) -> Prediction {
+    super::predicted::predicted(&QUIET, scene, request, summary)
 }
 
 /// A scene and its file, which is empty if there is none.

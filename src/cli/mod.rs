@@ -17,6 +17,7 @@ mod kinds;
 mod mesh;
 mod new;
 mod optimise;
+mod predicted;
 mod progress;
 mod propagated;
 mod record_map;

@@ -1,17 +1,17 @@
 //! `impactcheck reduced`: runs a reduced model of a scene.
 
-use super::requested_model::{self, ModelRequest, RequestedModel};
+use super::predicted::{PredictedSummary, predicted};
+use super::requested_model::{self, ModelRequest};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{ExitStatus, Result};
 use crate::file::write_file;
 use crate::format::{prefixed, with_unit};
 use crate::kinds::SharedBodies;
-use crate::prediction::{self, Interval, Prediction, Similar};
+use crate::prediction::{Interval, Prediction};
 use crate::report::{self, history_format};
 use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Sideways, Summary};
-use crate::scene::{Model, Scene};
+use crate::scene::Scene;
 use clap::Args;
-use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -59,33 +59,6 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     finish(context, arguments, (&scene, &outcome), &prediction)
 }
 
-/// What a reference of `scene` would find. Model C runs for it as it is by default, unless `summary` is its own.
-fn predicted(context: &Context, scene: &Scene, request: &ModelRequest, summary: &Summary) -> Prediction {
-    // before model C costs anything
-    Similar::of(scene)?;
-    let default = ModelRequest { model: Some(RequestedModel::Named(Model::C)), ..ModelRequest::default() };
-    let is_default = request.modes.or(scene.reduced.modes).is_none() && request.tolerance.is_none();
-    if is_default && summary.choice.is_none() && summary.model == Some(Model::C.to_string()) {
-        return prediction::predict(scene, summary);
-    }
-    let mut scene = scene.clone();
-    scene.reduced.modes = None;
-    let outcome = kinds::of(&scene)
-        .reduced(context, &scene, &default, &SharedBodies::default(), false)
-        .map_err(|error| format!("model C does not run: {error}"))?;
-    prediction::predict(&scene, &outcome.summary)
-}
-
-/// A summary, and what a reference would find.
-#[derive(Serialize)]
-struct PredictedSummary<'a> {
-    #[serde(flatten)]
-    summary: &'a Summary,
-    prediction: Option<&'a BTreeMap<&'static str, Interval>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    prediction_reason: Option<&'a String>,
-}
-
 /// Writes the history, if it is asked for, and prints warnings and summary.
 fn finish(
     context: &Context,
@@ -101,11 +74,7 @@ fn finish(
     for warning in &summary.warnings {
         context.note(format_args!("warning: {warning}"));
     }
-    let document = PredictedSummary {
-        summary,
-        prediction: prediction.as_ref().ok(),
-        prediction_reason: prediction.as_ref().err(),
-    };
+    let document = PredictedSummary::of(summary, prediction);
     arguments.json.print(&document, |document| {
         let mut lines = vec![table(document.summary, |name| crate::kinds::of(scene).has(scene, name))];
         lines.extend(document.prediction.map(|intervals| predicted_lines(intervals, summary)));

@@ -100,15 +100,17 @@ pub struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    /// Largest error predicted of the quantities [`COVERED`] for a model with these values, relative, and the quantity; `None` if one is
-    /// not determined.
+    /// Error predicted of the quantity `name` for a model with these values, relative; `None` if it is not determined.
+    pub fn error(&self, name: &str, value: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
+        let own = self.own.get(name)?;
+        let scale = scale(name, self.exact, self.speed).filter(|scale| *scale > 0.0)?;
+        Some(((value(name)? - (self.exact)(name)?) / scale).abs() + own)
+    }
+
+    /// The largest of the quantities [`COVERED`], and which that is; `None` if one is not determined.
     pub fn largest(&self, value: impl Fn(&str) -> Option<f64>) -> Option<(f64, &'static str)> {
-        let error = |name: &'static str| {
-            let own = self.own.get(name)?;
-            let scale = scale(name, self.exact, self.speed).filter(|scale| *scale > 0.0)?;
-            Some((((value(name)? - (self.exact)(name)?) / scale).abs() + own, name))
-        };
-        let errors: Option<Vec<_>> = COVERED.into_iter().map(error).collect();
+        let errors: Option<Vec<_>> =
+            COVERED.into_iter().map(|name| Some((self.error(name, &value)?, name))).collect();
         errors?.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))
     }
 }

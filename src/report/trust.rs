@@ -1,15 +1,18 @@
 //! How far a model can be trusted in its scene, in a sentence: what it hits, how well, and whether its theory holds there.
 
 use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
-use crate::format::{percent_above, significant, words};
+use crate::format::{percent_above, words};
 use crate::kinds;
+use crate::prediction::auto::Judge;
+use crate::prediction::predicted_errors;
 use crate::report::summary_column::SummaryColumn;
 use crate::result::Summary;
-use crate::scene::Scene;
-use crate::validated::{MEASURES, Place, Validation, Vicinity};
+use crate::scene::{Model, Scene};
 
 /// Discrepancy, relative or in rad, up to which a model is said to be right within it rather than off by it.
 pub(crate) const SMALL: f64 = 0.01;
+/// Truncation error up to which model C stands for itself with all modes.
+const CONVERGED: f64 = 1e-3;
 /// Discrepancy from which on it counts as large.
 pub(crate) const LARGE: f64 = 0.05;
 
@@ -107,45 +110,33 @@ pub(crate) fn validity(scene: &Scene, summary: &Summary) -> Vec<String> {
     std::iter::once(range).chain((!yielding).then_some(unchecked)).collect()
 }
 
-/// Where `model` was compared with references in other scenes, seen from the scene that `reference` lies in: whether that was
-/// near by, and how far off the model was there.
-pub(crate) fn validated(
+/// What was to be expected of `model` in `scene` by the validation base, without the reference of the scene; `None` where model C, by which
+/// it is judged, is not among the models, or has few modes.
+pub(crate) fn predicted(
     scene: &Scene,
     comparison: &SceneComparison,
-    model: &str,
-    known: &[Validation],
+    model: &ModelComparison,
 ) -> Option<String> {
-    let reference = &comparison.reference;
-    let place = Place::of(scene, reference)?;
-    let vicinity = Vicinity::of(known, model, &reference.scene_hash, &place)?;
-    let worst = |scenes: &[&Validation]| {
-        let rows = scenes.iter().filter_map(|v| v.worst()).map(|row| row.relative().abs());
-        rows.fold(0.0, f64::max)
+    let judges = |other: &&ModelComparison| {
+        other.model == Model::C.to_string()
+            && other.summary.truncation_error.is_none_or(|error| error <= CONVERGED)
     };
-    let nearest = format!(
-        "nearest {}, where it differs by {}",
-        vicinity.nearest.scene,
-        percent_above(worst(&[vicinity.nearest]))
-    );
-    let beyond = vicinity.beyond.iter().map(|(measure, own, end)| {
-        let side = if own > end { "up to" } else { "down to" };
-        format!("{} {}, compared {side} {}", MEASURES[*measure], significant(*own, 3), significant(*end, 3))
-    });
-    if !vicinity.beyond.is_empty() {
-        return Some(format!(
-            "no similar scene was compared ({}); {nearest}",
-            beyond.collect::<Vec<_>>().join(", ")
-        ));
-    }
-    let where_ = match vicinity.near.len() {
-        0 => return Some(format!("no similar scene was compared; {nearest}")),
-        1 => format!("in {}, a similar scene", vicinity.near[0].scene),
-        several => format!("in {several} similar scenes"),
+    let continuum = &comparison.models.iter().find(judges)?.summary;
+    let own = match predicted_errors(scene, continuum) {
+        Ok(own) => own,
+        Err(reason) => return Some(format!("nothing is predicted: {reason}")),
     };
-    Some(match worst(&vicinity.near) {
-        off if off <= SMALL => format!("agrees within {} {where_}", percent_above(off)),
-        off => format!("differs by up to {} {where_}", percent_above(off)),
-    })
+    let exact = |name: &str| continuum.value(name);
+    let speed = kinds::of(scene).approach(scene).ok()?.outer_speed;
+    let judge = Judge { exact: &exact, own: &own, speed };
+    let value = |name: &str| model.summary.value(name);
+    let efficiency = judge.error("efficiency", &value)?;
+    let peaks = ["outer_force_peak", "inner_force_peak"].map(|name| judge.error(name, &value).unwrap_or(0.0));
+    Some(format!(
+        "predicted by other scenes (95 %): efficiency within {}, force peaks within {}",
+        percent_above(efficiency),
+        percent_above(peaks[0].max(peaks[1]))
+    ))
 }
 
 #[cfg(test)]

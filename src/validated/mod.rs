@@ -4,11 +4,9 @@
 //! whose references are too large to come with it; those of a user's scenes lie in the user's store, beside the references.
 
 mod record;
-mod vicinity;
 
 pub use crate::kinds::{MEASURES, Place};
 pub use record::{merge, of_store, record, shipped, update};
-pub use vicinity::{NEAR, Vicinity};
 
 use crate::comparison::{Check, Discrepancy, ModelComparison, SceneComparison, value_in};
 use crate::format::rounded;

@@ -65,7 +65,8 @@ fn wet_impacts_and_benders_have_an_estimate() {
     for name in ["scenes/examples/wet-valve-plate.toml", "scenes/examples/rocker-bender.toml"] {
         let scene = Scene::read(resolve(name).unwrap()).unwrap();
         for (model, modes) in [(Model::B, Some(2)), (Model::C, None)] {
-            let error = Reduced::new(&scene, model, modes).unwrap().run(1e-4).unwrap().truncation_error.unwrap();
+            let error =
+                Reduced::new(&scene, model, modes).unwrap().run(1e-4).unwrap().truncation_error.unwrap();
             assert!(error.is_finite() && error > 0.0, "{name}: {error}");
         }
     }

@@ -113,42 +113,19 @@ fn every_mark_stands_where_its_scene_lies() {
     assert!(text.contains("](validated.svg)"));
 }
 
+/// What other scenes let expect holds what the reference finds.
 #[test]
-fn the_sentence_states_which_scenes_are_similar() {
-    let known = known();
-    let sentence = |known: Vec<Validation>, model: &str| {
-        let ([page, ..], place) = pages(known);
-        let start = format!("<li data-model=\"{model}\">");
-        (between(&page, &start, "</li>").to_owned(), place)
+fn the_sentence_predicts_what_the_reference_finds() {
+    let ([page, ..], _) = pages(known());
+    let errors = |model: &str| {
+        let stated = between(&page, &format!("<li data-model=\"{model}\">"), "</li>");
+        let (_, predicted) =
+            stated.split_once("predicted by other scenes (95 %): efficiency within ").unwrap();
+        let (efficiency, rest) = predicted.split_once(" %, force peaks within ").unwrap();
+        [efficiency, rest.split_once(" %").unwrap().0].map(|text| text.parse::<f64>().unwrap())
     };
-    for (model, starts) in [("B", "differs by up to "), ("C", "agrees within ")] {
-        let (stated, here) = sentence(known.clone(), model);
-        let hash = &known.iter().find(|v| v.scene == "scaled-plate-r10").unwrap().scene_hash;
-        let near: Vec<f64> = known
-            .iter()
-            .filter(|v| v.model == model && v.scene_hash != *hash)
-            .filter(|v| here.factor(&v.place.unwrap()) <= 2.0)
-            .map(|v| v.worst().unwrap().relative().abs())
-            .collect();
-        let ending = format!(" % in {} similar scenes", near.len());
-        let (before, _) = stated.split_once(&ending).unwrap_or_else(|| panic!("{stated}"));
-        let (_, percent) = before.rsplit_once(starts).unwrap_or_else(|| panic!("{stated}"));
-        let (percent, worst) = (percent.parse::<f64>().unwrap(), near.iter().fold(0.0_f64, |a, b| a.max(*b)));
-        assert!(percent >= 100.0 * worst && percent <= 111.0 * worst, "{stated}: {worst}");
-    }
-    // without those near by, and without those as far out
-    let ([..], here) = pages(Vec::new());
-    let far: Vec<Validation> =
-        known.iter().filter(|v| here.factor(&v.place.unwrap()) > 2.0).cloned().collect();
-    let (stated, _) = sentence(far.clone(), "C");
-    assert!(stated.contains("no similar scene was compared; nearest "), "{stated}");
-    let patch = |v: &Validation| v.place.unwrap().patch_over_thickness;
-    let narrow: Vec<Validation> = far.into_iter().filter(|v| patch(v) < here.patch_over_thickness).collect();
-    let (stated, _) = sentence(narrow, "C");
-    assert!(
-        stated.contains("no similar scene was compared (patch/thickness 0.153, compared up to 0.15"),
-        "{stated}"
-    );
-    let (stated, _) = sentence(Vec::new(), "C");
-    assert!(!stated.contains("validated"), "{stated}");
+    // the reference: B is 0.20 % off in the efficiency and up to 11 % in force peaks, C 0.02 and 0.18 %
+    let ([b, b_peaks], [c, c_peaks]) = (errors("B"), errors("C"));
+    assert!((0.2..0.5).contains(&b) && (11.0..16.0).contains(&b_peaks), "{b} {b_peaks}");
+    assert!((0.02..0.3).contains(&c) && (0.18..3.0).contains(&c_peaks), "{c} {c_peaks}");
 }

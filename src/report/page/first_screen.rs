@@ -5,7 +5,7 @@ use crate::report::conclusion::conclusion;
 use crate::report::page::html::{model_badge, named_as, scrolled};
 use crate::report::page::prose::prose;
 use crate::report::summary_column::SummaryColumn;
-use crate::report::trust::{LARGE, SMALL, accuracy, size_class, validated, validity};
+use crate::report::trust::{LARGE, SMALL, accuracy, predicted, size_class, validity};
 use crate::report::{SceneReport, kinds};
 use crate::result::Summary;
 use maud::{Markup, html};
@@ -49,7 +49,7 @@ fn trust(columns: &[SummaryColumn], report: &SceneReport) -> Markup {
     let is_common = models.len() > 1 && models.iter().all(|model| of(model) == common);
     let sentence = |model: &ModelComparison| {
         let own = if is_common { Vec::new() } else { of(model) };
-        let elsewhere = validated(report.scene, comparison, &model.model, &report.attachments.validated);
+        let elsewhere = predicted(report.scene, comparison, model);
         std::iter::once(accuracy(columns, model)).chain(elsewhere).chain(own).collect::<Vec<_>>().join("; ")
     };
     html! {

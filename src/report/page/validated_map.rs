@@ -7,7 +7,7 @@ use crate::plot::svg::{FONT_SIZE, Svg, Theme, x2};
 use crate::report::page::discrepancy_picture::mark;
 use crate::report::page::html::scrolled;
 use crate::report::trust::size_class;
-use crate::validated::{MEASURES, NEAR, Place, Row, Validation};
+use crate::validated::{MEASURES, Place, Row, Validation};
 use maud::{Markup, html};
 
 /// Name of the drawing beside a report.
@@ -21,6 +21,8 @@ const LEFT: f64 = 52.0;
 const RIGHT: f64 = 10.0;
 const TOP: f64 = 26.0;
 const BOTTOM: f64 = 46.0;
+/// Factor up to which each of the numbers may differ of scenes in the dashed frame.
+const NEAR: f64 = 2.0;
 /// Most marks on an axis.
 const MARKS: usize = 10;
 /// What the axes reach beyond the outermost scene, as a factor.

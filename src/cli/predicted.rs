@@ -1,0 +1,49 @@
+//! What a reference would find, with the result of a reduced model.
+
+use super::requested_model::{ModelRequest, RequestedModel};
+use super::{Context, kinds};
+use crate::kinds::SharedBodies;
+use crate::prediction::{self, Interval, Prediction, Similar};
+use crate::result::Summary;
+use crate::scene::{Model, Scene};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What a reference of `scene` would find. Model C runs for it as it is by default, unless `summary` is its own.
+pub(super) fn predicted(
+    context: &Context,
+    scene: &Scene,
+    request: &ModelRequest,
+    summary: &Summary,
+) -> Prediction {
+    // before model C costs anything
+    Similar::of(scene)?;
+    let default = ModelRequest { model: Some(RequestedModel::Named(Model::C)), ..ModelRequest::default() };
+    let is_default = request.modes.or(scene.reduced.modes).is_none() && request.tolerance.is_none();
+    if is_default && summary.choice.is_none() && summary.model == Some(Model::C.to_string()) {
+        return prediction::predict(scene, summary);
+    }
+    let mut scene = scene.clone();
+    scene.reduced.modes = None;
+    let outcome = kinds::of(&scene)
+        .reduced(context, &scene, &default, &SharedBodies::default(), false)
+        .map_err(|error| format!("model C does not run: {error}"))?;
+    prediction::predict(&scene, &outcome.summary)
+}
+
+/// A summary, and what a reference would find.
+#[derive(Debug, Serialize)]
+pub struct PredictedSummary<'a> {
+    #[serde(flatten)]
+    pub(super) summary: &'a Summary,
+    pub(super) prediction: Option<&'a BTreeMap<&'static str, Interval>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    prediction_reason: Option<&'a String>,
+}
+
+impl<'a> PredictedSummary<'a> {
+    /// Both together.
+    pub fn of(summary: &'a Summary, prediction: &'a Prediction) -> Self {
+        Self { summary, prediction: prediction.as_ref().ok(), prediction_reason: prediction.as_ref().err() }
+    }
+}
