@@ -72,16 +72,15 @@ pub(super) fn within_bounds(error: f64, text: &str) -> std::result::Result<f64, 
 pub(super) fn choice_in_words(choice: &Choice) -> String {
     let percent = |error: Option<f64>| error.map_or("unknown".to_owned(), |e| format!("{:.2} %", 100.0 * e));
     let mut lines = vec![format!(
-        "auto, tolerance {:.4} % of {}: estimated error {}; in {:.1} % of random test scenes the true error was within the tolerance",
+        "auto, tolerance {:.4} % of {}: predicted error {} ({:.0} %)",
         100.0 * choice.tolerance,
         choice.covers.join(", "),
         percent(choice.estimated_error),
         100.0 * choice.coverage
     )];
     for tried in &choice.tried {
-        let kind = if tried.model == "C" { "bending " } else { "" };
         let plural = if tried.modes == 1 { "" } else { "s" };
-        let name = format!("model {}, {} {kind}mode{plural}", tried.model, tried.modes);
+        let name = format!("model {}, {} mode{plural}", tried.model, tried.modes);
         let quantity = tried.quantity.as_ref().map_or(String::new(), |q| format!(" ({q})"));
         let mark = if tried.chosen { "  <- chosen" } else { "" };
         lines.push(format!("  {name:<26} {:>10}{quantity}{mark}", percent(tried.estimated_error)));
@@ -94,7 +93,7 @@ pub(super) fn choice_in_words(choice: &Choice) -> String {
 #[derive(Debug, Clone, Default, Args)]
 pub struct ModelRequest {
     /// Reduced model: A (one mode), B (Kirchhoff plate modes), C (3D elastic modes, residual flexibility), or auto
-    /// (the least expensive one whose estimated error is within the tolerance) [default: the scene's, or C]
+    /// (the simplest one that is predicted to be within the tolerance) [default: the scene's, or C]
     #[arg(long)]
     pub model: Option<RequestedModel>,
     /// Number of modes [default: the scene's, or 16 for B and as many as needed for C]
