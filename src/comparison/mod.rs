@@ -34,7 +34,7 @@ pub use integrity::{Check, contradictions};
 pub use kinds::plate_budget;
 pub use moved::{ComparisonDocument, Moved, MovedVerdict, Moves, moved};
 pub use reference_check::{ReferenceCheck, ReferenceRow};
-pub use series::{ORDER, STANDARD_ERRORS};
+pub use series::{MeshValues, ORDER, STANDARD_ERRORS, mesh_values};
 pub use verdict::{GateRules, Undecided, Verdict};
 
 use crate::curves::{AlignedCurve, CommonAxis, CurveMetrics};

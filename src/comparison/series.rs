@@ -3,7 +3,7 @@
 //! The rule is that of `fem_reference/common/uncertainty.py`: values on meshes of the size h over the finest one's are fitted by
 //! v + c h^1.5 (least squares, weighted with h^-2); the band is the distance to v and 2.5 of its standard errors.
 
-use crate::numerics::least_squares::fit;
+use crate::numerics::least_squares::{Fit, fit};
 use crate::result::Summary;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -69,8 +69,43 @@ fn agree(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDING * a.abs().max(b.abs())
 }
 
+/// A quantity on the meshes of a reference, SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshValues {
+    /// Element size over that of the finest mesh, and the value there. Shape (meshes).
+    pub values: Vec<(f64, f64)>,
+    /// v and c of the fit v + c h^1.5.
+    pub fit: [f64; 2],
+    /// Half width of the 95 % band about the value on the finest mesh.
+    pub band: f64,
+}
+
+/// The quantities of `summary` on its meshes, by name; empty without a series that can be read.
+pub fn mesh_values(summary: &Summary) -> BTreeMap<String, MeshValues> {
+    let series = summary.convergence.as_ref().map(Series::deserialize);
+    let Some(Ok(Series { meshes, quantities })) = series else { return BTreeMap::new() };
+    let sizes: Vec<f64> = meshes.iter().map(|mesh| meshes[0].factor / mesh.factor).collect();
+    let of = |(name, SeriesValues { values }): (String, SeriesValues)| {
+        if values.len() != sizes.len() || values.len() < LEAST_MESHES {
+            return None;
+        }
+        let line = fitted(&values, &sizes)?;
+        let [limit, slope] = line.coefficients;
+        let fit = [values[0] + limit, slope];
+        let band = band(&values, &sizes);
+        Some((name, MeshValues { values: sizes.iter().copied().zip(values).collect(), fit, band }))
+    };
+    quantities.into_iter().filter_map(of).collect()
+}
+
 /// Half width of the 95 % band about `values[0]` from the `values` on meshes of the `sizes`; infinite if they tell none.
 fn band(values: &[f64], sizes: &[f64]) -> f64 {
+    fitted(values, sizes)
+        .map_or(f64::INFINITY, |line| line.coefficients[0].abs() + STANDARD_ERRORS * line.errors[0])
+}
+
+/// The differences of the `values` to the first one.
+fn fitted(values: &[f64], sizes: &[f64]) -> Option<Fit<2>> {
     let rows: Vec<([f64; 2], f64)> = values
         .iter()
         .zip(sizes)
@@ -79,7 +114,7 @@ fn band(values: &[f64], sizes: &[f64]) -> f64 {
             ([weight, weight * h.powf(ORDER)], weight * (value - values[0]))
         })
         .collect();
-    fit(&rows).map_or(f64::INFINITY, |line| line.coefficients[0].abs() + STANDARD_ERRORS * line.errors[0])
+    fit(&rows)
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ const DIGITS: usize = 4;
 const DETERMINED: f64 = 0.05;
 /// Share of its band by which a reference of the base is off in 95 % of all cases: the bands are wider than they need to be. Against
 /// meshes with twice the elements in every direction (`validation/finer.py`).
-const NOISE: f64 = 0.65;
+const NOISE: f64 = 0.5;
 
 /// What a reference would find of a quantity.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -3,6 +3,7 @@
 use crate::comparison::{Discrepancy, ModelComparison, Verdict};
 use crate::format::model_name;
 use crate::report::conclusion::{assumptions, conclusion};
+use crate::report::figure::course::course;
 use crate::report::figure::thumbnail::thumbnail;
 use crate::report::{SceneReport, kinds};
 use crate::result::Outcome;
@@ -28,6 +29,9 @@ pub(crate) struct Overview {
     pub(crate) models: Vec<ModelOverview>,
     /// Numbers that drift, and numbers recorded over commits.
     pub(crate) drift: [usize; 2],
+    /// Path and name of the number that has come furthest.
+    #[serde(default)]
+    pub(crate) course: Option<[String; 2]>,
 }
 
 /// A model of a scene in short.
@@ -78,6 +82,7 @@ impl Overview {
             command: report.command.clone(),
             models: models.map(|(model, outcome)| ModelOverview::of(report, model, outcome)).collect(),
             drift: [trends.iter().filter(|trend| trend.drifts_since.is_some()).count(), trends.len()],
+            course: course(trends),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Drawings of results.
 
 pub(crate) mod budget;
+pub(crate) mod convergence;
+pub(crate) mod course;
 pub(crate) mod curves;
 mod efficiency_boxes;
 pub(crate) mod geometry;

@@ -7,7 +7,7 @@ use crate::plot::colours::look;
 use crate::report::Report;
 use crate::report::existing::{self, ExistingScene, Folder};
 use crate::report::export::Export;
-use crate::report::figure::thumbnail;
+use crate::report::figure::{course, thumbnail};
 use crate::report::overview::{ModelOverview, Overview, RowOverview};
 use crate::report::page::coverage;
 use crate::report::page::html::{
@@ -53,7 +53,7 @@ pub(crate) fn index_of(report: &Report, scenes: &[ExistingScene]) -> String {
         p.soft.note { "Curves: the first contact force, the reference in black under the models. Largest difference: shaded by size, whatever the "
             "verdict. Tolerance used: largest share of a tolerance that a quantity uses; where the reference's 95 % "
             "uncertainty contains the bound the verdict is undecided, and the scene's page shows how to decide it. Trend: numbers that "
-            "drift over the commits recorded." }
+            "drift over the commits recorded, and the course of the one that has come furthest within its tolerance." }
         p.soft.note { (EFFICIENCY) } p.soft.note { (AMONG) }
         @if report.coverage().is_some() {
             p { a href=(coverage::FILE) { "Coverage" } ": which features of scenes were compared with what, and how far models differ there." }
@@ -190,7 +190,10 @@ fn row(scene: &ExistingScene, model: &ModelOverview) -> Markup {
                 @match used { Some((d, used)) => { (significant(100.0 * used, 2)) " % " span.soft { (words(&d.quantity)) } }, None => "–" }
             }
             (number("reduced", own, prefixed("1", 1.0), 4))
-            td data-sort=(drifting) { @if recorded > 0 { (drifting) " of " (recorded) } @else { "–" } }
+            td data-sort=(drifting) {
+                @if recorded > 0 { (drifting) " of " (recorded) } @else { "–" }
+                @if let Some(course) = &overview.course { (course::drawn(course)) }
+            }
             td.left.soft { (marked(&scene.date())) }
         }
     }

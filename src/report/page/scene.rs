@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::format::{model_name, prefixed, with_unit};
 use crate::report::conclusion::assumptions;
 use crate::report::export::Export;
+use crate::report::figure::convergence::convergence_html;
 use crate::report::page::facts::facts;
 use crate::report::page::html::{assumptions_badge, model_badge, page, scene_badge};
 use crate::report::page::section::discrepancy::{checks, contradictions, model_section};
@@ -109,6 +110,7 @@ fn mesh(report: &SceneReport, pictures: &Markup) -> Markup {
     let interval = reference.sample_interval.unwrap_or(f64::NAN);
     html! {
         (pictures)
+        (convergence_html(reference))
         details {
             summary { "Mesh and solver in numbers (SI units)" }
             (facts(&[("mesh", reference.mesh.as_ref()), ("solver", reference.solver.as_ref())]))
