@@ -208,8 +208,8 @@ def yielding(point: Point) -> Table:
 
 
 def off_centre(point: Point) -> Table:
-    """The outer body strikes away from the centre."""
-    scene = dry(point)
+    """The outer body strikes away from the centre. Solid elements take spheres only."""
+    scene = _of_spheres(dry(point))
     plate = scene["plate"]
     plate.pop("damping_ratio", None)
     plate["radius"] = min(plate["radius"], 20.0 * plate["thickness"])
