@@ -212,9 +212,8 @@ def off_centre(point: Point) -> Table:
     scene = _of_spheres(dry(point))
     plate = scene["plate"]
     plate.pop("damping_ratio", None)
-    if plate["edge"] == "simply-supported":
-        # model C has no form of it
-        plate["edge"] = "clamped"
+    # model C has no form of supported plates, A and B have none of free ones
+    plate["edge"] = "clamped"
     plate["radius"] = min(plate["radius"], 20.0 * plate["thickness"])
     scene["outer"]["offset"] = plate["radius"] * point.uniform(0.02, 0.6)
     scene["reference"]["elements_per_contact_radius"] = ELEMENTS / 4.0

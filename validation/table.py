@@ -39,6 +39,8 @@ def _proportions(scene: dict[str, Any]) -> dict[str, float]:
         "Poisson's ratio of the plate": of_plate["poisson_ratio"],
         "damping ratio of the plate": plate.get("damping_ratio", 0.0),
         "speed of the inner body over the outer one's": inner.get("speed", 0.0) / outer["speed"],
+        "coefficient of friction": scene.get("friction", 0.0),
+        "offset over radius of the plate": outer.get("offset", 0.0) / plate["radius"],
     }
 
 

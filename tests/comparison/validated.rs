@@ -5,9 +5,7 @@ use impactcheck::comparison::compare_scene;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::scene::{Model, Scene, Shape, every};
-use impactcheck::validated::{
-    NEAR, Place, SAME_SINCE, Validation, Vicinity, merge, of_store, shipped, update,
-};
+use impactcheck::validated::{Place, SAME_SINCE, Validation, merge, of_store, shipped, update};
 
 /// Share of the reference by which what is computed again may differ: a tenth of the smallest discrepancy told.
 const SAME: f64 = 1e-4;
@@ -108,44 +106,6 @@ fn at(scene: &str, measures: [f64; 3], off: f64) -> Validation {
     entry.place = Some(Place { patch_over_thickness, contact_over_period, mass_ratio, stokes_number: None });
     entry.rows.iter_mut().for_each(|row| row.reduced = row.reference * (1.0 + off));
     Validation { scene: scene.into(), scene_hash: scene.into(), ..entry }
-}
-
-#[test]
-fn near_is_near_in_all_three_numbers() {
-    let own = at("own", [0.1, 1.0, 1.0], 0.5);
-    let near = at("near", [0.19, 0.6, 1.0], 0.002);
-    let far = [
-        at("patch", [0.21, 1.0, 1.0], 0.1),
-        at("contact", [0.1, 0.4, 1.0], 0.1),
-        at("mass", [0.1, 1.0, 3.0], 0.1),
-        Validation { model: "B".into(), ..at("other-model", [0.1, 1.0, 1.0], 0.1) },
-    ];
-    let place = own.place.unwrap();
-    let all: Vec<Validation> = far.iter().chain([&near, &own]).cloned().collect();
-    let of = |known: &[Validation], place: &Place| {
-        let vicinity = Vicinity::of(known, "C", &own.scene_hash, place).unwrap();
-        let names: Vec<String> = vicinity.near.iter().map(|v| v.scene.clone()).collect();
-        (names, vicinity.nearest.scene.clone(), vicinity.factor, vicinity.beyond)
-    };
-    let (names, nearest, factor, beyond) = of(&all, &place);
-    assert_eq!((&names[..], &*nearest, beyond.len()), (&["near".to_owned()][..], "near", 0));
-    assert!((factor - 1.9).abs() < 1e-12 && factor < NEAR);
-    let (names, nearest, factor, _) = of(&far, &place);
-    assert!(names.is_empty() && nearest == "patch" && factor > NEAR, "{nearest} {factor}");
-    // beyond everything that is known, in one number
-    let (_, _, _, beyond) = of(&all, &Place { contact_over_period: 0.3, ..place });
-    assert_eq!(beyond, [(1, 0.3, 0.4)]);
-    // a film tells of films that are as strong
-    let in_film = |scene, stokes_number| {
-        let entry = at(scene, [0.1, 1.0, 1.0], 0.1);
-        let place = entry.place.map(|place| Place { stokes_number: Some(stokes_number), ..place });
-        Validation { place, ..entry }
-    };
-    let films = [near.clone(), in_film("film", 100.0), in_film("viscous", 10.0)];
-    assert_eq!(of(&films, &place).0, ["near"]);
-    let (names, nearest, ..) = of(&films, &in_film("own", 150.0).place.unwrap());
-    assert_eq!((&names[..], &*nearest), (&["film".to_owned()][..], "film"));
-    assert_eq!(Vicinity::of(std::slice::from_ref(&own), "C", &own.scene_hash, &place), None);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The group of the validation base that a plate impact belongs to.
 
 use crate::kinds::plate_impact::PlateImpact;
-use crate::scene::Shape;
+use crate::scene::{Edge, Shape};
 
 /// The group of `setup`, as `validation/draw.py` names it.
 ///
@@ -13,6 +13,9 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
     }
     if setup.series.is_some() {
         return Err("the validation base has no repeated impacts".into());
+    }
+    if !setup.outer.is_centred() && setup.plate.edge != Edge::Clamped {
+        return Err("the validation base has off-centre impacts on clamped plates only".into());
     }
     let features = [
         (setup.fluid.is_some(), "film"),
@@ -47,5 +50,7 @@ pub(super) fn proportions(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
             inner.material.youngs_modulus / plate.material.youngs_modulus,
         ),
         ("speed of the inner body over the outer one's", inner.speed / outer.speed),
+        ("coefficient of friction", setup.friction),
+        ("offset over radius of the plate", outer.offset / plate.radius),
     ]
 }

@@ -26,7 +26,7 @@ pub fn run(_: &mut Note) -> Result<Study> {
     let description = format!(
         "The model that auto chooses of A, B (16 modes) and C on {} random scenes of the validation base, from the errors in the other half \
          of their group. met = 1: the predicted error is within the tolerance. true_error: the largest of {} against the finite-element reference, \
-         beyond what that may be off by itself.",
+         beyond the error of the reference itself.",
         held.len(),
         COVERED.join(", ")
     );

@@ -86,10 +86,10 @@ fn description(held: &[HeldOut]) -> String {
          models A, B and C, the reference's own error included.",
         solved().len()
     );
-    text += "\n\nModel C is furthest off, beyond what its reference may be off by, in:\n";
+    text += "\n\nModel C has its largest errors, beyond that of the reference, in:\n";
     for (scene, quantity, judged) in worst(held) {
         let (error, noise) = (percent_above(judged.seen.error), percent_above(judged.seen.noise));
-        text += &format!("\n- {scene}: {quantity} by {error} (reference ± {noise})");
+        text += &format!("\n- {scene}: {quantity} {error} (reference ± {noise})");
     }
     if !refused().is_empty() {
         text += "\n\nNot solved:\n";
