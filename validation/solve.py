@@ -22,7 +22,10 @@ from pathlib import Path
 from typing import Any
 
 PROGRAM = Path(__file__).resolve().parent.parent / "target" / "release" / "impactcheck"
-MODELS = ("A", "B", "C")
+MODELS = {"plate-impact": ("A", "B", "C"), "impact": ("C",), "seal-seat": ("C",)}
+"""Reduced models by the kind of scene."""
+CONTACTS = ("outer_contacts", "inner_contacts")
+"""Numbers of contacts, which seal seats do not count."""
 DIGITS = 7
 
 Row = dict[str, Any]
@@ -45,7 +48,7 @@ def row(document: Row, alone: Row) -> Row:
         "hash": reference["scene_hash"],
         "dofs": reference["mesh"]["dofs"],
         "unsound": [check["check"] for check in scene["integrity"] if check["verdict"] == "fail"],
-        "contacts": [reference["outer_contacts"], reference["inner_contacts"]],
+        "contacts": [reference[name] for name in CONTACTS if name in reference],
         "extrapolated": {name: _short(of["extrapolated"]) for name, of in found.items()},
         "bands": {name: _short(of["band"]) for name, of in found.items()},
         "models": {
@@ -63,7 +66,7 @@ def _place(validated: Path) -> Row | None:
 
 def _alone(path: Path, program: Path) -> Row:
     """Summary of model C, by its name; none where it has no form."""
-    command = [program, "reduced", path, "--model", "C", "--json"]
+    command: list[str | Path] = [program, "reduced", path, "--model", "C", "--json"]
     ran = subprocess.run(command, capture_output=True, text=True, check=False)
     return {"C": json.loads(ran.stdout)} if ran.returncode == 0 else {}
 
@@ -74,6 +77,7 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
     Raises ``subprocess.TimeoutExpired`` after ``longest`` seconds.
     """
     begun = time.monotonic()
+    file = tomllib.loads(path.read_text(encoding="utf-8"))
     with tempfile.TemporaryDirectory() as folder:
         command: list[str | Path] = [
             program,
@@ -88,16 +92,15 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
             "--resolution",
             "coarse",
             "--models",
-            ",".join(MODELS),
+            ",".join(MODELS[file["kind"]]),
             "--out",
             f"{folder}/page",
         ]
-        ran = subprocess.run(
-            command, capture_output=True, text=True, check=False, timeout=longest
-        )
+        ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=longest)
         place = _place(Path(folder) / "store" / "validated.jsonl")
-        # off centre, model C makes a mesh of its own, which comparisons of several models do without
-        alone = _alone(path, program) if ran.stdout.strip() and "offset" in path.read_text() else {}
+        # off centre, model C makes a mesh of its own, which comparisons of several models omit
+        is_off_centre = "offset" in file.get("outer", {})
+        alone = _alone(path, program) if ran.stdout.strip() and is_off_centre else {}
     found: Row = {"scene": path.stem, "stratum": path.stem.rsplit("-", 1)[0]}
     if ran.stdout.strip():
         found |= row(json.loads(ran.stdout), alone) | {"place": place}
@@ -108,7 +111,6 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
             "refused": " ".join(reason.replace("\u2502", " ").split()),
             "status": ran.returncode,
         }
-    file = tomllib.loads(path.read_text(encoding="utf-8"))
     return found | {"seconds": round(time.monotonic() - begun, 1), "file": file}
 
 
