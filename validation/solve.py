@@ -22,8 +22,9 @@ from pathlib import Path
 from typing import Any
 
 PROGRAM = Path(__file__).resolve().parent.parent / "target" / "release" / "impactcheck"
-MODELS = {"plate-impact": ("A", "B", "C"), "impact": ("C",), "seal-seat": ("C",)}
-"""Reduced models by the kind of scene."""
+MODELS = ("A", "B", "C")
+OF_KIND = {"plate-impact": MODELS, "impact": ("C",), "seal-seat": ("C",)}
+"""Models that a kind of scene has."""
 CONTACTS = ("outer_contacts", "inner_contacts")
 """Numbers of contacts, which seal seats do not count."""
 DIGITS = 7
@@ -92,7 +93,7 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
             "--resolution",
             "coarse",
             "--models",
-            ",".join(MODELS[file["kind"]]),
+            ",".join(OF_KIND[file["kind"]]),
             "--out",
             f"{folder}/page",
         ]
