@@ -39,7 +39,7 @@ def room(shape: Part) -> float:
     (x, y, z), (length, width, _), wall = shape.struck, shape.size, shape.wall
     if shape.kind == "box":
         return min(x, y, length - x, width - y) - wall
-    # a sphere above the foot clears its fillet, which is of about the same radius or smaller
+    # a sphere that does not reach the foot fits into its fillet or, if larger, clears it
     return z - shape.foot if shape.kind == "bracket" else math.inf
 
 

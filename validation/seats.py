@@ -10,8 +10,8 @@ import math
 
 from points import Point, Table, between
 
-ELEMENTS = 5.0
-"""Across the radius of the contact ring at `paper` resolution; the coarsest mesh of four has too
+ELEMENTS = 16.0
+"""Across the radius of the contact ring at `paper` resolution; below 5 the coarsest mesh has too
 few nodes on the ring."""
 INTENDED = math.radians(15.0)
 """Direction of the flight, which changes nothing that is compared."""
@@ -28,7 +28,7 @@ def seat(point: Point) -> Table:
     # the bore ends below the cone, and below the sphere
     mouth = below + (ring - bore) / math.tan(half)
     depth = max(mouth, radius) + radius * point.uniform(0.1, 0.3)
-    membrane = radius * point.log(0.25, 0.6)
+    membrane = radius * point.log(0.12, 0.35)
     centre = membrane + radius * point.uniform(0.05, 0.6) + depth * cos + bore * sin
     # the ring leans inwards: its outermost point is its highest one
     highest = centre - below * cos + ring * sin
@@ -41,7 +41,7 @@ def seat(point: Point) -> Table:
     outermost = web + 2.0 * ring * cos + rise * math.tan(half - tilt)
     across = ring + (rise + ring * sin) / cos * math.tan(half)
     length, width = 2.0 * (outermost + margin), 2.0 * (across + margin)
-    rim = 0.5 * math.hypot(length, width) + membrane * point.log(1.5, 6.0)
+    rim = 0.5 * math.hypot(length, width) + membrane * point.log(3.0, 12.0)
     material = {
         "youngs_modulus": point.log(1e9, 10e9),
         "poisson_ratio": point.uniform(0.3, 0.42),

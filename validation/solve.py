@@ -65,6 +65,15 @@ def _place(validated: Path) -> Row | None:
     return next((json.loads(line)["place"] for line in lines), None)
 
 
+def _is_alone(file: Row) -> bool:
+    """Whether a comparison has no model C as it is by default, which predictions are made of.
+
+    Off the centre it makes a mesh of its own, which comparisons of several models omit. Of a seat
+    it is compared on the reference's mesh, which is coarser than its own.
+    """
+    return "offset" in file.get("outer", {}) or file["kind"] == "seal-seat"
+
+
 def _alone(path: Path, program: Path) -> Row:
     """Summary of model C, by its name; none where it has no form."""
     command: list[str | Path] = [program, "reduced", path, "--model", "C", "--json"]
@@ -99,9 +108,7 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
         ]
         ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=longest)
         place = _place(Path(folder) / "store" / "validated.jsonl")
-        # off centre, model C makes a mesh of its own, which comparisons of several models omit
-        is_off_centre = "offset" in file.get("outer", {})
-        alone = _alone(path, program) if ran.stdout.strip() and is_off_centre else {}
+        alone = _alone(path, program) if ran.stdout.strip() and _is_alone(file) else {}
     found: Row = {"scene": path.stem, "stratum": path.stem.rsplit("-", 1)[0]}
     if ran.stdout.strip():
         found |= row(json.loads(ran.stdout), alone) | {"place": place}
