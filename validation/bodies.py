@@ -21,9 +21,12 @@ ELEMENTS = 3.0
 PATCHES = (0.06, 0.3)
 """Contact radius over the wall; a larger one reaches over fillets and edges."""
 RADII = (0.8, 3.0)
-"""Of the spheres over the wall."""
+"""Of the spheres over the wall, as far as `HEAVIEST` allows."""
 STEEPEST = 0.12
 """Patch over radius of a sphere; the reference refuses more than 0.18."""
+HEAVIEST = 0.4
+"""Mass of the outer sphere over that of the part. On a held beam a heavier one strikes again and
+again, for ten times as long as the first contact and more."""
 
 MM = 1e-3
 SHAPES = {"box": box, "bracket": bracket, "beam": beam}
@@ -67,7 +70,9 @@ def body(point: Point) -> Table:
         "poisson_ratio": point.uniform(0.1, 0.4),
         "density": of_body["density"] * point.log(0.5, 5.0),
     }
-    radius = wall * point.log(*RADII)
+    mass = HEAVIEST * shape.volume * MM**3 * of_body["density"]
+    largest = (3.0 * mass / (4.0 * math.pi * of_spheres["density"])) ** (1 / 3)
+    radius = min(wall * point.log(*RADII), largest)
     behind = min(wall * point.some(0.6, between(*RADII)), 0.95 * room(shape) * MM)
     # an inner sphere that is smaller than the outer one has the steeper patch of both
     steepest = STEEPEST * radius * min(1.0, (behind or radius) / radius) ** (2 / 3)
