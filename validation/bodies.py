@@ -20,8 +20,12 @@ ELEMENTS = 3.0
 """Across the contact radius at `paper` resolution."""
 PATCHES = (0.06, 0.3)
 """Contact radius over the wall; a larger one reaches over fillets and edges."""
-RADII = (0.8, 3.0)
-"""Of the spheres over the wall, as far as `HEAVIEST` allows."""
+LARGEST = 3.0
+"""Radius of the outer sphere over the wall, as far as `HEAVIEST` allows."""
+RADII = (0.6, 1.0)
+"""Of the outer sphere over the largest one."""
+BEHIND = (0.6, 1.8)
+"""Radius of the inner sphere over the outer one's."""
 STEEPEST = 0.12
 """Patch over radius of a sphere; the reference refuses more than 0.18."""
 HEAVIEST = 0.4
@@ -71,9 +75,9 @@ def body(point: Point) -> Table:
         "density": of_body["density"] * point.log(0.5, 5.0),
     }
     mass = HEAVIEST * shape.volume * MM**3 * of_body["density"]
-    largest = (3.0 * mass / (4.0 * math.pi * of_spheres["density"])) ** (1 / 3)
-    radius = min(wall * point.log(*RADII), largest)
-    behind = min(wall * point.some(0.6, between(*RADII)), 0.95 * room(shape) * MM)
+    heaviest = (3.0 * mass / (4.0 * math.pi * of_spheres["density"])) ** (1 / 3)
+    radius = min(LARGEST * wall, heaviest) * point.log(*RADII)
+    behind = min(radius * point.some(0.6, between(*BEHIND)), 0.95 * room(shape) * MM)
     # an inner sphere that is smaller than the outer one has the steeper patch of both
     steepest = STEEPEST * radius * min(1.0, (behind or radius) / radius) ** (2 / 3)
     patch = min(wall * point.log(*PATCHES), steepest)
