@@ -2,8 +2,9 @@
 
     python validation/draw.py FOLDER [--only STRATUM]
 
-writes `FOLDER/<stratum>-<number>.toml`. The same number is always the same scene: the points are a
-scrambled Sobol sequence of each stratum, and more scenes leave the first ones as they are.
+writes `FOLDER/<stratum>-<number>.toml`, and the STEP file of a body with the same name. The same
+number is always the same scene: the points are a scrambled Sobol sequence of each stratum, and more
+scenes leave the first ones as they are.
 """
 
 from __future__ import annotations
@@ -14,55 +15,20 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from scipy.stats import qmc
+import bodies
+import seats
+from points import STRATA, Point, Table, between, points
 
-STRATA = {"dry": 256, "film": 40, "friction": 40, "relaxing": 40, "yielding": 40, "off-centre": 32}
-"""Scenes of each stratum."""
-SEED = 20261127
 ELEMENTS = 8.0
 """Across the contact radius at `paper` resolution; off-centre impacts take a quarter."""
 
 STEEPEST = 0.15
 """Patch over radius of the outer body, which Hertz's contact supposes to be small."""
 
-Table = dict[str, Any]
-
-
-class Point:
-    """A point of the unit cube whose coordinates are taken one after the other."""
-
-    def __init__(self, coordinates: list[float]) -> None:
-        self._left = iter(coordinates)
-
-    def uniform(self, low: float, high: float) -> float:
-        """Between the bounds."""
-        return low + next(self._left) * (high - low)
-
-    def log(self, low: float, high: float) -> float:
-        """Between the bounds, even in the logarithm."""
-        return math.exp(self.uniform(math.log(low), math.log(high)))
-
-    def some(self, share: float, draw: Callable[[float], float]) -> float:
-        """In a share of all scenes what ``draw`` makes of a number between 0 and 1, else 0."""
-        at = next(self._left)
-        return draw(at / share) if at < share else 0.0
-
-    def one_of(self, *choices: str) -> str:
-        """One of equally likely choices."""
-        return choices[int(self.uniform(0.0, len(choices)))]
-
-
-DIMENSION = 24
-"""Most coordinates that a scene takes."""
-
-
-def _between(low: float, high: float) -> Callable[[float], float]:
-    return lambda at: low * (high / low) ** at
-
 
 def _body(point: Point, radius: float, density: float, material: str) -> Table:
     """A sphere of this radius, or a compact body of its mass with another tip."""
-    blunt = point.some(0.25, _between(0.3, 3.0))
+    blunt = point.some(0.25, between(0.3, 3.0))
     if not blunt:
         return {"kind": "sphere", "radius": radius, "material": material}
     mass = 4.0 / 3.0 * math.pi * radius**3 * density
@@ -123,11 +89,11 @@ def dry(point: Point) -> Table:
     inner = _body(
         point, cube ** (1 / 3) * point.log(0.1, 10.0) ** (1 / 3), of_bodies["density"], "bodies"
     )
-    if gap := point.some(0.3, _between(0.03, 3.0)):
+    if gap := point.some(0.3, between(0.03, 3.0)):
         inner["gap"] = gap * approach
     if speed := point.some(0.3, lambda at: -0.5 + 1.5 * at):
         inner["speed"] = speed * outer["speed"]
-    if damping := point.some(0.25, _between(1e-3, 0.1)):
+    if damping := point.some(0.25, between(1e-3, 0.1)):
         plate["damping_ratio"] = damping
     scene = {"materials": materials, "plate": plate, "outer": outer, "inner": inner}
     return scene | {"reference": {"elements_per_contact_radius": ELEMENTS}}
@@ -227,25 +193,31 @@ DRAWN: dict[str, Callable[[Point], Table]] = {
     "relaxing": relaxing,
     "yielding": yielding,
     "off-centre": off_centre,
+    "body": bodies.body,
+    "seat": seats.seat,
 }
+"""Makes a scene of a stratum."""
+FILES = {"body": bodies.write_file}
+"""Writes the file that a scene of a stratum names."""
 
 
 def scenes(stratum: str, count: int) -> list[Table]:
     """The first scenes of a stratum, SI."""
-    seed = SEED + list(DRAWN).index(stratum)
-    size = 2 ** math.ceil(math.log2(count))
-    points = qmc.Sobol(DIMENSION, scramble=True, seed=seed).random(size)[:count]
-    return [
-        {"name": f"{stratum}-{k:03}", "kind": "plate-impact"}
-        | DRAWN[stratum](Point([float(at) for at in point]))
-        for k, point in enumerate(points)
-    ]
+    found = []
+    for k, point in enumerate(points(stratum, count)):
+        scene: Table = {"name": f"{stratum}-{k:03}", "kind": "plate-impact"} | DRAWN[stratum](point)
+        if stratum in FILES:
+            scene["body"]["file"] = f"{scene['name']}.step"
+        found.append(scene)
+    return found
 
 
 def _toml(table: Table, path: str = "") -> str:
     """A scene that one can read: numbers of six digits."""
 
     def value(of: Any) -> str:
+        if isinstance(of, list):
+            return f"[{', '.join(map(value, of))}]"
         return f"{of:.6g}" if isinstance(of, float) else f'"{of}"'
 
     parts = {key: part for key, part in table.items() if isinstance(part, dict)}
@@ -254,6 +226,15 @@ def _toml(table: Table, path: str = "") -> str:
     if path and lines:
         text = f"\n[{path}]\n{text}"
     return text + "".join(_toml(part, f"{path}.{key}".lstrip(".")) for key, part in parts.items())
+
+
+def write(stratum: str, count: int, folder: Path) -> None:
+    """Write the first scenes of a stratum into a folder."""
+    for scene, point in zip(scenes(stratum, count), points(stratum, count), strict=True):
+        path = folder / f"{scene['name']}.toml"
+        path.write_text(_toml(scene), encoding="utf-8")
+        if stratum in FILES:
+            FILES[stratum](point, path.with_suffix(".step"))
 
 
 def main() -> None:
@@ -265,9 +246,7 @@ def main() -> None:
     given.folder.mkdir(parents=True, exist_ok=True)
     for stratum, count in STRATA.items():
         if given.only in (None, stratum):
-            for scene in scenes(stratum, count):
-                path = given.folder / f"{scene['name']}.toml"
-                path.write_text(_toml(scene), encoding="utf-8")
+            write(stratum, count, given.folder)
 
 
 if __name__ == "__main__":

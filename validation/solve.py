@@ -23,6 +23,10 @@ from typing import Any
 
 PROGRAM = Path(__file__).resolve().parent.parent / "target" / "release" / "impactcheck"
 MODELS = ("A", "B", "C")
+OF_KIND = {"plate-impact": MODELS, "impact": ("C",), "seal-seat": ("C",)}
+"""Models that a kind of scene has."""
+CONTACTS = ("outer_contacts", "inner_contacts")
+"""Numbers of contacts, which seal seats do not count."""
 DIGITS = 7
 
 Row = dict[str, Any]
@@ -45,7 +49,7 @@ def row(document: Row, alone: Row) -> Row:
         "hash": reference["scene_hash"],
         "dofs": reference["mesh"]["dofs"],
         "unsound": [check["check"] for check in scene["integrity"] if check["verdict"] == "fail"],
-        "contacts": [reference["outer_contacts"], reference["inner_contacts"]],
+        "contacts": [reference[name] for name in CONTACTS if name in reference],
         "extrapolated": {name: _short(of["extrapolated"]) for name, of in found.items()},
         "bands": {name: _short(of["band"]) for name, of in found.items()},
         "models": {
@@ -61,6 +65,15 @@ def _place(validated: Path) -> Row | None:
     return next((json.loads(line)["place"] for line in lines), None)
 
 
+def _is_alone(file: Row) -> bool:
+    """Whether a comparison has no model C as it is by default, which predictions are made of.
+
+    Off the centre it makes a mesh of its own, which comparisons of several models omit. Of a seat
+    it is compared on the reference's mesh, which is coarser than its own.
+    """
+    return "offset" in file.get("outer", {}) or file["kind"] == "seal-seat"
+
+
 def _alone(path: Path, program: Path) -> Row:
     """Summary of model C, by its name; none where it has no form."""
     command: list[str | Path] = [program, "reduced", path, "--model", "C", "--json"]
@@ -74,6 +87,7 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
     Raises ``subprocess.TimeoutExpired`` after ``longest`` seconds.
     """
     begun = time.monotonic()
+    file = tomllib.loads(path.read_text(encoding="utf-8"))
     with tempfile.TemporaryDirectory() as folder:
         command: list[str | Path] = [
             program,
@@ -88,14 +102,13 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
             "--resolution",
             "coarse",
             "--models",
-            ",".join(MODELS),
+            ",".join(OF_KIND[file["kind"]]),
             "--out",
             f"{folder}/page",
         ]
         ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=longest)
         place = _place(Path(folder) / "store" / "validated.jsonl")
-        # comparisons of several models omit model C off the centre: it makes a mesh of its own
-        alone = _alone(path, program) if ran.stdout.strip() and "offset" in path.read_text() else {}
+        alone = _alone(path, program) if ran.stdout.strip() and _is_alone(file) else {}
     found: Row = {"scene": path.stem, "stratum": path.stem.rsplit("-", 1)[0]}
     if ran.stdout.strip():
         found |= row(json.loads(ran.stdout), alone) | {"place": place}
@@ -106,7 +119,6 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
             "refused": " ".join(reason.replace("\u2502", " ").split()),
             "status": ran.returncode,
         }
-    file = tomllib.loads(path.read_text(encoding="utf-8"))
     return found | {"seconds": round(time.monotonic() - begun, 1), "file": file}
 
 

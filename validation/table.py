@@ -11,9 +11,12 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import bodies
+import seats
 from solve import MODELS
 
 SIDES = ("extrapolated", "bands")
@@ -22,8 +25,8 @@ LARGEST = 1_000_000
 """Bytes of the table, which comes with the program."""
 
 
-def _proportions(scene: dict[str, Any]) -> dict[str, float]:
-    """Numbers that were drawn, by the names that the program has for them."""
+def of_plate(scene: dict[str, Any]) -> dict[str, float]:
+    """Numbers of a plate impact that were drawn, by the names that the program has for them."""
     plate, outer, inner = scene["plate"], scene["outer"], scene["inner"]
     materials = scene["materials"]
     of_plate = materials[plate["material"]]
@@ -44,6 +47,14 @@ def _proportions(scene: dict[str, Any]) -> dict[str, float]:
     }
 
 
+PROPORTIONS: dict[str, Callable[[dict[str, Any]], dict[str, float]]] = {
+    "plate-impact": of_plate,
+    "impact": bodies.proportions,
+    "seal-seat": seats.proportions,
+}
+"""Numbers of a scene that were drawn, by its kind."""
+
+
 def line(row: dict[str, Any]) -> dict[str, Any]:
     """What the table keeps of a scene, which its number makes again."""
     scene = row["file"]
@@ -54,9 +65,9 @@ def line(row: dict[str, Any]) -> dict[str, Any]:
             name: [side.get(name) for side in (*(row[side] for side in SIDES), *models)]
             for name in row["extrapolated"]
         }
-        kept["speed"] = scene["outer"]["speed"]
+        kept["speed"] = scene["actuator" if "actuator" in scene else "outer"]["speed"]
         kept["proportions"] = {
-            name: float(f"{value:.7g}") for name, value in _proportions(scene).items()
+            name: float(f"{value:.7g}") for name, value in PROPORTIONS[scene["kind"]](scene).items()
         }
     return kept
 

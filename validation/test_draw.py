@@ -3,17 +3,33 @@
 from __future__ import annotations
 
 import math
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import gmsh
 import pytest
 
+from fem_reference.body.files import gmsh_session
 from fem_reference.common.hertz import hertz_approach, hertz_contact_radius, hertz_stiffness
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import bodies
+import seats
 from check import moved
-from draw import DRAWN, ELEMENTS, STEEPEST, scenes
+from draw import DRAWN, ELEMENTS, STEEPEST, scenes, write
+from points import points
+from solve import PROGRAM
+
+
+def volume(path: Path) -> float:
+    """Of the solid in a STEP file, mm^3."""
+    with gmsh_session():
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.occ.importShapes(str(path))
+        gmsh.model.occ.synchronize()
+        return float(sum(gmsh.model.occ.getMass(3, tag) for _, tag in gmsh.model.getEntities(3)))
 
 
 @pytest.mark.parametrize("stratum", DRAWN)
@@ -42,6 +58,44 @@ def test_patches_and_contact_times_are_those_drawn() -> None:
         assert scene["reference"]["elements_per_contact_radius"] == ELEMENTS
     assert 0.0 < min(patches) < 0.02 and 0.4 < max(patches) <= 0.6 * (1.0 + 1e-6)
     assert max(times) / min(times) > 100.0
+
+
+def test_bodies_and_seats_fill_their_ranges() -> None:
+    """Patches and spheres over the wall; the mass ratio of the actuator, and one tip or two."""
+    of_bodies = [bodies.proportions(scene) for scene in scenes("body", 60)]
+    for name, low, high in (
+        ("contact patch on a half-space over the wall", 0.03, bodies.PATCHES[1]),
+        ("radius of the outer body over the wall", 0.3, bodies.LARGEST),
+        ("mass of the outer body over the struck body's", 0.0, bodies.HEAVIEST),
+    ):
+        found = [numbers[name] for numbers in of_bodies]
+        assert low <= min(found) and high / 2.0 < max(found) <= high * (1.0 + 1e-5)
+    of_seats = [seats.proportions(scene) for scene in scenes("seat", 60)]
+    masses = [numbers["mass of the actuator over the sphere's"] for numbers in of_seats]
+    assert 2.0 <= min(masses) < 3.0 and 20.0 < max(masses) <= 30.0
+    assert {numbers["number of tips"] for numbers in of_seats} == {1.0, 2.0}
+
+
+def test_a_part_has_the_same_file_every_time_and_the_volume_stated(tmp_path: Path) -> None:
+    """The content of the file identifies the scene."""
+    for folder in ("first", "second"):
+        (tmp_path / folder).mkdir()
+        write("body", 3, tmp_path / folder)
+    files = sorted((tmp_path / "first").glob("*.step"))
+    assert len(files) == 3
+    for path, point in zip(files, points("body", 3), strict=True):
+        assert path.read_bytes() == (tmp_path / "second" / path.name).read_bytes()
+        assert volume(path) == pytest.approx(bodies.part(point).volume, rel=1e-6)
+
+
+@pytest.mark.skipif(not PROGRAM.exists(), reason="the program is not built")
+@pytest.mark.parametrize(("stratum", "count"), [("body", 6), ("seat", 60)])
+def test_scenes_are_valid(stratum: str, count: int, tmp_path: Path) -> None:
+    """Of a valid scene, only the reference is missing."""
+    write(stratum, count, tmp_path)
+    for path in tmp_path.glob("*.toml"):
+        command: list[str | Path] = [PROGRAM, "--store", tmp_path / "store", "compare", path]
+        assert subprocess.run(command, capture_output=True, check=False).returncode == 11
 
 
 def test_what_moves_by_more_than_a_twentieth_of_its_band_is_listed() -> None:
