@@ -10,10 +10,10 @@ import math
 import sys
 from pathlib import Path
 
-from points import Point, Table, between, points
+from points import Point, Table, between
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from fem_reference.common.hertz import hertz_approach, hertz_stiffness
+from fem_reference.common.hertz import hertz_stiffness
 from fem_reference.general_impact.parts import Part, beam, box, bracket, write_part
 
 ELEMENTS = 3.0
@@ -104,29 +104,6 @@ def body(point: Point) -> Table:
     if point.one_of("held", "held", "free") == "held":
         scene["body"]["fixed"] = [[MM * x for x in shape.held]]
     return scene
-
-
-def proportions(scene: Table) -> dict[str, float]:
-    """Numbers that were drawn, by name; the wall and the volume are those of the scene's part."""
-    stratum, number = scene["name"].rsplit("-", 1)
-    shape = part(points(stratum, int(number) + 1)[-1])
-    materials, outer = scene["materials"], scene["outer"]
-    of_body, of_spheres = materials["body"], materials["spheres"]
-    wall, radius, mass = shape.wall * MM, outer["radius"], _mass(outer, materials)
-    stiffness = hertz_stiffness(_modulus(of_body, of_spheres), radius)
-    patch = math.sqrt(radius * hertz_approach(mass, outer["speed"], stiffness))
-    behind = _mass(scene["inner"], materials) if "inner" in scene else 0.0
-    return {
-        "contact patch on a half-space over the wall": patch / wall,
-        "radius of the outer body over the wall": radius / wall,
-        "modulus of the outer body over the struck body's": of_spheres["youngs_modulus"]
-        / of_body["youngs_modulus"],
-        "mass of the outer body over the struck body's": mass
-        / (shape.volume * MM**3 * of_body["density"]),
-        "mass of the inner body over the outer one's": behind / mass,
-        "Poisson's ratio of the struck body": of_body["poisson_ratio"],
-        "whether the struck body is held": float("fixed" in scene["body"]),
-    }
 
 
 def write_file(point: Point, path: Path) -> None:

@@ -88,37 +88,3 @@ def seat(point: Point) -> Table:
         floor = membrane + (lowest - membrane) * point.uniform(0.1, 0.6)
         scene["seat"] |= {"notch_width": 2.0 * notch * web, "notch_floor": floor}
     return scene
-
-
-def proportions(scene: Table) -> dict[str, float]:
-    """Numbers that were drawn, by name."""
-    seat, sphere, actuator = scene["seat"], scene["sphere"], scene["actuator"]
-    materials = scene["materials"]
-    of_seat, of_sphere = materials[seat["material"]], materials[sphere["material"]]
-    radius, tips = sphere["radius"], actuator["tip_positions"]
-    mass = 4.0 / 3.0 * math.pi * radius**3 * of_sphere["density"]
-    wave = math.sqrt(of_seat["youngs_modulus"] / of_seat["density"])
-    return {
-        "thickness over radius of the membrane": seat["membrane_thickness"]
-        / seat["membrane_radius"],
-        "length of the island over the membrane's diameter": 0.5
-        * seat["island_length"]
-        / seat["membrane_radius"],
-        "height of the island over the membrane's thickness": seat["island_height"]
-        / seat["membrane_thickness"],
-        "radius of the sphere over the membrane's thickness": radius / seat["membrane_thickness"],
-        "distance of the seats over the sphere's diameter": 0.5 * seat["seat_distance"] / radius,
-        "tilt of the seats": seat["tilt"],
-        "aperture angle of the cones": seat["aperture_angle"],
-        "width of the notch over the distance of the seats": seat.get("notch_width", 0.0)
-        / seat["seat_distance"],
-        "Poisson's ratio of the seat": of_seat["poisson_ratio"],
-        "density of the sphere over the seat's": of_sphere["density"] / of_seat["density"],
-        "mass of the actuator over the sphere's": actuator["mass"] / mass,
-        "speed of the actuator over that of waves in the seat": actuator["speed"] / wave,
-        "radius of the tips over the sphere's": actuator["tip_radius"] / radius,
-        "number of tips": float(len(tips)),
-        "outermost tip over half of the island's length": 2.0
-        * max(map(abs, tips))
-        / seat["island_length"],
-    }

@@ -32,53 +32,45 @@ DIGITS = 7
 Row = dict[str, Any]
 
 
-def _short(value: float | None) -> float | None:
+def short(value: float | None) -> float | None:
+    """With the digits that are kept."""
     return None if value is None else float(f"{value:.{DIGITS}g}")
 
 
-def row(document: Row, alone: Row) -> Row:
+def row(document: Row, continuum: Row | None) -> Row:
     """What is kept of the comparison of one scene: what the meshes say, and the models' values.
 
-    ``alone`` has the summaries of models that are not compared with others.
+    ``continuum`` is the summary of model C as it is by default.
     """
     scene = document["scenes"][0]
     reference = scene["reference"]
     found = reference["convergence"]["quantities"]
-    summaries = {model["model"]: model["summary"] for model in scene["models"]} | alone
+    summaries = {model["model"]: model["summary"] for model in scene["models"]}
+    if continuum is not None:
+        summaries["C"] = continuum
     return {
         "hash": reference["scene_hash"],
         "dofs": reference["mesh"]["dofs"],
         "unsound": [check["check"] for check in scene["integrity"] if check["verdict"] == "fail"],
         "contacts": [reference[name] for name in CONTACTS if name in reference],
-        "extrapolated": {name: _short(of["extrapolated"]) for name, of in found.items()},
-        "bands": {name: _short(of["band"]) for name, of in found.items()},
+        "extrapolated": {name: short(of["extrapolated"]) for name, of in found.items()},
+        "bands": {name: short(of["band"]) for name, of in found.items()},
+        "similarity": (continuum or {}).get("similarity"),
         "models": {
-            model: {name: _short(summary.get(name)) for name in found}
+            model: {name: short(summary.get(name)) for name in found}
             for model, summary in summaries.items()
         },
     }
 
 
-def _place(validated: Path) -> Row | None:
-    """Where the scene lies among others, as the program keeps it of a comparison that is sound."""
-    lines = validated.read_text(encoding="utf-8").splitlines() if validated.exists() else []
-    return next((json.loads(line)["place"] for line in lines), None)
+def _continuum(path: Path, program: Path) -> Row | None:
+    """Summary of model C as it is by default, which predictions are made of; none without a form.
 
-
-def _is_alone(file: Row) -> bool:
-    """Whether a comparison has no model C as it is by default, which predictions are made of.
-
-    Off the centre it makes a mesh of its own, which comparisons of several models omit. Of a seat
-    it is compared on the reference's mesh, which is coarser than its own.
+    A comparison may have another one: off the centre none, of a seat that on the reference's mesh.
     """
-    return "offset" in file.get("outer", {}) or file["kind"] == "seal-seat"
-
-
-def _alone(path: Path, program: Path) -> Row:
-    """Summary of model C, by its name; none where it has no form."""
     command: list[str | Path] = [program, "reduced", path, "--model", "C", "--json"]
     ran = subprocess.run(command, capture_output=True, text=True, check=False)
-    return {"C": json.loads(ran.stdout)} if ran.returncode == 0 else {}
+    return dict(json.loads(ran.stdout)) if ran.returncode == 0 else None
 
 
 def solve(path: Path, program: Path, longest: float | None = None) -> Row:
@@ -107,11 +99,10 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
             f"{folder}/page",
         ]
         ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=longest)
-        place = _place(Path(folder) / "store" / "validated.jsonl")
-        alone = _alone(path, program) if ran.stdout.strip() and _is_alone(file) else {}
+        continuum = _continuum(path, program) if ran.stdout.strip() else None
     found: Row = {"scene": path.stem, "stratum": path.stem.rsplit("-", 1)[0]}
     if ran.stdout.strip():
-        found |= row(json.loads(ran.stdout), alone) | {"place": place}
+        found |= row(json.loads(ran.stdout), continuum)
     else:
         # the sentence of the error, which is broken into lines with bars before them
         reason = ran.stderr[ran.stderr.rfind("\u00d7") + 1 :].split("help:")[0]

@@ -11,48 +11,15 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import bodies
-import seats
-from solve import MODELS
+from solve import MODELS, short
 
 SIDES = ("extrapolated", "bands")
 """Of a row: what is known of the reference."""
 LARGEST = 1_000_000
 """Bytes of the table, which comes with the program."""
-
-
-def of_plate(scene: dict[str, Any]) -> dict[str, float]:
-    """Numbers of a plate impact that were drawn, by the names that the program has for them."""
-    plate, outer, inner = scene["plate"], scene["outer"], scene["inner"]
-    materials = scene["materials"]
-    of_plate = materials[plate["material"]]
-    ratios = {
-        f"modulus of the {name} body over the plate's": materials[body["material"]][
-            "youngs_modulus"
-        ]
-        / of_plate["youngs_modulus"]
-        for name, body in (("outer", outer), ("inner", inner))
-    }
-    return ratios | {
-        "thickness over radius of the plate": plate["thickness"] / plate["radius"],
-        "Poisson's ratio of the plate": of_plate["poisson_ratio"],
-        "damping ratio of the plate": plate.get("damping_ratio", 0.0),
-        "speed of the inner body over the outer one's": inner.get("speed", 0.0) / outer["speed"],
-        "coefficient of friction": scene.get("friction", 0.0),
-        "offset over radius of the plate": outer.get("offset", 0.0) / plate["radius"],
-    }
-
-
-PROPORTIONS: dict[str, Callable[[dict[str, Any]], dict[str, float]]] = {
-    "plate-impact": of_plate,
-    "impact": bodies.proportions,
-    "seal-seat": seats.proportions,
-}
-"""Numbers of a scene that were drawn, by its kind."""
 
 
 def line(row: dict[str, Any]) -> dict[str, Any]:
@@ -66,9 +33,9 @@ def line(row: dict[str, Any]) -> dict[str, Any]:
             for name in row["extrapolated"]
         }
         kept["speed"] = scene["actuator" if "actuator" in scene else "outer"]["speed"]
-        kept["proportions"] = {
-            name: float(f"{value:.7g}") for name, value in PROPORTIONS[scene["kind"]](scene).items()
-        }
+        similarity = kept.pop("similarity") or {"numbers": {}, "results": {}}
+        for part in ("numbers", "results"):
+            kept[part] = {name: short(value) for name, value in similarity[part].items()}
     return kept
 
 

@@ -75,7 +75,7 @@ fn predicted(
         Ok((outcome, prediction))
     };
     let (outcome, prediction) = detached(py, || (), solve)?.map_err(raised)?;
-    let summary = json(&PredictedSummary::of(&outcome.summary, &prediction))?;
+    let summary = json(&PredictedSummary::of(&scene.scene, &outcome.summary, &prediction))?;
     Ok((summary, curves(outcome.history)))
 }
 

@@ -2,7 +2,7 @@
 
 use super::requested_model::{ModelRequest, RequestedModel};
 use super::{Context, kinds};
-use crate::kinds::SharedBodies;
+use crate::kinds::{SharedBodies, Similarity};
 use crate::prediction::{self, Interval, Prediction, Similar};
 use crate::result::Summary;
 use crate::scene::{Model, Scene};
@@ -39,11 +39,22 @@ pub struct PredictedSummary<'a> {
     pub(super) prediction: Option<&'a BTreeMap<&'static str, Interval>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     prediction_reason: Option<&'a String>,
+    /// What makes the scene similar to others, of model C.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    similarity: Option<Similarity>,
 }
 
 impl<'a> PredictedSummary<'a> {
-    /// Both together.
-    pub fn of(summary: &'a Summary, prediction: &'a Prediction) -> Self {
-        Self { summary, prediction: prediction.as_ref().ok(), prediction_reason: prediction.as_ref().err() }
+    /// Both together, of `scene`.
+    pub fn of(scene: &Scene, summary: &'a Summary, prediction: &'a Prediction) -> Self {
+        let is_continuum = summary.model == Some(Model::C.to_string());
+        Self {
+            summary,
+            prediction: prediction.as_ref().ok(),
+            prediction_reason: prediction.as_ref().err(),
+            similarity: is_continuum
+                .then(|| Similarity::of(crate::kinds::of(scene), scene, summary).ok())
+                .flatten(),
+        }
     }
 }

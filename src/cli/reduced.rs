@@ -74,7 +74,7 @@ fn finish(
     for warning in &summary.warnings {
         context.note(format_args!("warning: {warning}"));
     }
-    let document = PredictedSummary::of(summary, prediction);
+    let document = PredictedSummary::of(scene, summary, prediction);
     arguments.json.print(&document, |document| {
         let mut lines = vec![table(document.summary, |name| crate::kinds::of(scene).has(scene, name))];
         lines.extend(document.prediction.map(|intervals| predicted_lines(intervals, summary)));

@@ -9,6 +9,7 @@ pub mod general_impact;
 mod place;
 pub mod plate_impact;
 pub mod seal_seat;
+mod similarity;
 
 pub use approach::Approach;
 pub use features::Feature;
@@ -19,6 +20,7 @@ pub use plate_impact::closed_forms::{ClosedForm, Form};
 pub use plate_impact::shared::SharedBodies;
 /// The mesh that a series of impacts follows, of kinds that need one.
 pub use seal_seat::SeatMesh as FollowedMesh;
+pub use similarity::Similarity;
 
 use crate::error::{Error, Result};
 use crate::result::Summary;
@@ -114,9 +116,15 @@ pub trait Kind: physics::Kind {
         Err(format!("the validation base has no scenes of kind `{}`", self.name()))
     }
 
-    /// Numbers of `scene` by name that scenes of the base are drawn in, besides those of [`Kind::place`].
-    fn proportions(&self, _: &Scene) -> Vec<(&'static str, f64)> {
+    /// Dimensionless numbers of `scene` by name that scenes of the base are drawn in.
+    fn numbers(&self, _: &Scene) -> Vec<(&'static str, f64)> {
         Vec::new()
+    }
+
+    /// Dimensionless numbers of `scene` by name that its result decides, with the `summary` of model C; all positive, or `None` if that
+    /// does not tell.
+    fn result_numbers(&self, _: &Scene, _summary: &Summary) -> Option<Vec<(&'static str, f64)>> {
+        Some(Vec::new())
     }
 
     /// Whether a material of `scene` deforms plastically.

@@ -66,7 +66,7 @@ pub fn choose(
         }
     };
     let exact = |name: &str| continuum.value(name);
-    let judge = Judge { exact: &exact, own: &own, speed: kinds::of(scene).approach(scene)?.outer_speed };
+    let judge = Judge { exact: &exact, own: &own, speed: super::impact_speed(scene) };
     let mut tried = Vec::new();
     let simpler = SIMPLER.into_iter().filter(|(model, _)| kinds::of(scene).models().contains(model));
     for (model, modes) in simpler {

@@ -1,6 +1,5 @@
 //! The validation base: random scenes that references have solved (`make validation`), one a line.
 
-use crate::kinds::Place;
 use crate::scene::Model;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -18,10 +17,10 @@ pub struct SolvedScene {
     pub stratum: String,
     /// Speed of the outer body, m/s.
     pub speed: f64,
-    /// Where it lies among others.
-    pub place: Option<Place>,
     /// Numbers of the scene that were drawn, by name.
-    pub proportions: BTreeMap<String, f64>,
+    pub numbers: BTreeMap<String, f64>,
+    /// Numbers of model C's result, by name, positive.
+    pub results: BTreeMap<String, f64>,
     /// By quantity, SI.
     pub values: BTreeMap<String, Values>,
 }

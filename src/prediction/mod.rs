@@ -12,7 +12,7 @@ pub use base::{RefusedScene, SolvedScene, refused, solved};
 pub use conformal::{ErrorScale, SeenError};
 
 use crate::format::{prefixed, with_unit};
-use crate::kinds::{self, Place};
+use crate::kinds::{self, Similarity};
 use crate::result::{Quantity, Summary};
 use crate::scene::{Model, Scene};
 use serde::Serialize;
@@ -26,6 +26,9 @@ pub const FEWEST: usize = 30;
 const MINOR: f64 = 0.05;
 /// End of the names of velocities.
 const VELOCITY: &str = "_velocity_final";
+/// Begin of the names of a sphere's velocities, and end of those of directions.
+const COMPONENT: &str = "sphere_velocity";
+const ANGLE: &str = "_angle";
 /// Digits shown of an interval.
 const DIGITS: usize = 4;
 /// Widest band over the scale with which a reference determines a quantity.
@@ -66,13 +69,14 @@ pub type Prediction = Result<BTreeMap<&'static str, Interval>, String>;
 /// A sentence where the scene is unlike those of the base.
 pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
     let similar = Similar::of(scene)?;
-    let (stratum, speed) = (similar.stratum, impact_speed(scene)?);
+    let (stratum, speed) = (similar.stratum, impact_speed(scene));
     let errors = similar.half_widths(scene, continuum)?;
     let interval = |quantity: &Quantity| {
         let &(error, scenes) = errors.get(quantity.name)?;
         let half = error * scale(quantity.name, |name| continuum.value(name), speed)?;
-        // a velocity may change its sign
-        let least = if quantity.name.ends_with(VELOCITY) { f64::NEG_INFINITY } else { 0.0 };
+        // velocities and directions have a sign
+        let is_signed = quantity.name.contains("_velocity_") || quantity.name.ends_with(ANGLE);
+        let least = if is_signed { f64::NEG_INFINITY } else { 0.0 };
         let (low, high) = ((quantity.value? - half).max(least), quantity.value? + half);
         Some((quantity.name, Interval { low, high, level: LEVEL, scenes, stratum }))
     };
@@ -88,8 +92,9 @@ pub fn predicted_errors(scene: &Scene, continuum: &Summary) -> Result<BTreeMap<&
     Ok(errors.into_iter().map(|(name, (error, _))| (name, error)).collect())
 }
 
-fn impact_speed(scene: &Scene) -> Result<f64, String> {
-    kinds::of(scene).approach(scene).map(|approach| approach.outer_speed).map_err(|error| error.to_string())
+/// Speed of the outer body, m/s; NaN of kinds whose quantities have no scale of it.
+pub fn impact_speed(scene: &Scene) -> f64 {
+    kinds::of(scene).approach(scene).map_or(f64::NAN, |approach| approach.outer_speed)
 }
 
 /// Scenes of the base that are of the same group as another one.
@@ -116,8 +121,8 @@ impl Similar {
             ));
         }
         let found = Self { stratum, scenes };
-        for (name, own) in kind.proportions(scene) {
-            found.require_within(name, own, |other| other.proportions.get(name).copied())?;
+        for (name, own) in kind.numbers(scene) {
+            found.require_within(name, own, |other| other.numbers.get(name).copied())?;
         }
         Ok(found)
     }
@@ -128,18 +133,11 @@ impl Similar {
         scene: &Scene,
         continuum: &Summary,
     ) -> Result<BTreeMap<&'static str, (f64, usize)>, String> {
-        let kind = kinds::of(scene);
-        let place = kind.place(scene, continuum);
-        if place.is_none() && self.scenes.iter().any(|other| other.place.is_some()) {
-            return Err("the contact radius is not known".into());
+        let own = Similarity::of(kinds::of(scene), scene, continuum)?;
+        for (name, value) in &own.results {
+            self.require_within(name, *value, |other| other.results.get(*name).copied())?;
         }
-        for (k, name) in kinds::MEASURES.into_iter().enumerate() {
-            if let Some(own) = place.map(|place| place.measures()[k]) {
-                self.require_within(name, own, |other| Some(other.place?.measures()[k]))?;
-            }
-        }
-        let proportions: BTreeMap<&str, f64> = kind.proportions(scene).into_iter().collect();
-        let place = coordinates(place, proportions.into_values());
+        let place = coordinates(own.results.values(), own.numbers.values());
         let half_width = |quantity: &Quantity| {
             let errors = errors(&self.scenes, quantity.name);
             let error = ErrorScale::new(&errors, LEVEL).filter(|_| errors.len() >= FEWEST)?;
@@ -177,27 +175,30 @@ pub fn error(scene: &SolvedScene, model: Model, quantity: &str) -> Option<(f64, 
     let scale = scale(quantity, |name| scene.of_model(Model::C, name), scene.speed).filter(|s| *s > 0.0)?;
     let band = values.band? / scale;
     let signed = (scene.of_model(model, quantity)? - values.reference?) / scale;
-    let place = coordinates(scene.place, scene.proportions.values().copied());
+    let place = coordinates(scene.results.values(), scene.numbers.values());
     let seen = SeenError { place, error: signed.abs(), noise: NOISE * band };
     (band <= DETERMINED).then_some((signed, seen))
 }
 
-/// Where a scene lies, for neighbours: the logarithms of the numbers of its `place`, or its proportions.
-fn coordinates(place: Option<Place>, proportions: impl Iterator<Item = f64>) -> Vec<f64> {
-    match place {
-        Some(place) => place.measures().into_iter().chain(place.stokes_number).map(f64::ln).collect(),
-        None => proportions.collect(),
-    }
+/// Where a scene lies, for neighbours: the logarithms of the numbers of its result, or its own numbers if the result has none.
+fn coordinates<'a>(
+    results: impl Iterator<Item = &'a f64>,
+    numbers: impl Iterator<Item = &'a f64>,
+) -> Vec<f64> {
+    let place: Vec<f64> = results.map(|value| value.ln()).collect();
+    if place.is_empty() { numbers.copied().collect() } else { place }
 }
 
 /// What the error of a quantity is relative to, by the values of a result and the `speed` of its impact in m/s: the quantity itself;
-/// of a velocity the speed; of an efficiency and a force that are negligible what is not.
+/// of a velocity the speed, of a direction 1 rad; of an efficiency and a force that are negligible what is not.
 pub fn scale(quantity: &str, value: impl Fn(&str) -> Option<f64>, speed: f64) -> Option<f64> {
     let own = value(quantity)?.abs();
     Some(match quantity {
         "efficiency" => own.max(MINOR),
         "inner_force_peak" => own.max(MINOR * value("outer_force_peak")?),
         _ if quantity.ends_with(VELOCITY) => speed,
+        _ if quantity.starts_with(COMPONENT) => value("sphere_speed")?,
+        _ if quantity.ends_with(ANGLE) => 1.0,
         _ => own,
     })
 }

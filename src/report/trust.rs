@@ -4,7 +4,7 @@ use crate::comparison::{Discrepancy, ModelComparison, SceneComparison};
 use crate::format::{percent_above, words};
 use crate::kinds;
 use crate::prediction::auto::Judge;
-use crate::prediction::predicted_errors;
+use crate::prediction::{impact_speed, predicted_errors};
 use crate::report::summary_column::SummaryColumn;
 use crate::result::Summary;
 use crate::scene::{Model, Scene};
@@ -127,8 +127,7 @@ pub(crate) fn predicted(
         Err(reason) => return Some(format!("nothing is predicted: {reason}")),
     };
     let exact = |name: &str| continuum.value(name);
-    let speed = kinds::of(scene).approach(scene).ok()?.outer_speed;
-    let judge = Judge { exact: &exact, own: &own, speed };
+    let judge = Judge { exact: &exact, own: &own, speed: impact_speed(scene) };
     let value = |name: &str| model.summary.value(name);
     let efficiency = judge.error("efficiency", &value)?;
     let peaks = ["outer_force_peak", "inner_force_peak"].map(|name| judge.error(name, &value).unwrap_or(0.0));

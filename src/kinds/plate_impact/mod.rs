@@ -6,7 +6,7 @@ mod stratum;
 
 pub use impactcheck_physics::kinds::plate_impact::*;
 
-use super::{Approach, ClosedForm, Feature, Place, Starter, Use, Value};
+use super::{Approach, ClosedForm, Feature, MEASURES, Place, Starter, Use, Value};
 use crate::error::Result;
 use crate::result::Summary;
 use crate::scene::{Edge, Geometry, Scene, Shape};
@@ -61,8 +61,14 @@ impl super::Kind for Kind {
         stratum::stratum(scene.plate_impact().map_err(|error| error.to_string())?)
     }
 
-    fn proportions(&self, scene: &Scene) -> Vec<(&'static str, f64)> {
-        scene.plate_impact().map(stratum::proportions).unwrap_or_default()
+    fn numbers(&self, scene: &Scene) -> Vec<(&'static str, f64)> {
+        scene.plate_impact().map(stratum::numbers).unwrap_or_default()
+    }
+
+    fn result_numbers(&self, scene: &Scene, summary: &Summary) -> Option<Vec<(&'static str, f64)>> {
+        let place = place::anywhere(scene.plate_impact().ok()?, summary)?;
+        let film = place.stokes_number.map(|number| ("Stokes number of the film", number));
+        Some(MEASURES.into_iter().zip(place.measures()).chain(film).collect())
     }
 
     fn yields(&self, scene: &Scene) -> bool {

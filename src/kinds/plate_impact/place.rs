@@ -11,7 +11,12 @@ const DIGITS: usize = 7;
 
 /// The place of `setup` with the result `summary`; `None` beside the centre of the plate or at an angle, or if the result does not tell.
 pub(super) fn place(setup: &PlateImpact, summary: &Summary) -> Option<Place> {
-    let pressure = summary.contact_pressure.as_ref().filter(|_| setup.outer.is_centred())?;
+    anywhere(setup, summary).filter(|_| setup.outer.is_centred())
+}
+
+/// The same, wherever the plate is struck.
+pub(super) fn anywhere(setup: &PlateImpact, summary: &Summary) -> Option<Place> {
+    let pressure = summary.contact_pressure.as_ref()?;
     let patch = pressure.outer.contact_radius.max(pressure.inner.contact_radius);
     let contact = summary.value("outer_contact_end")? * summary.value("first_frequency")?;
     let [outer, inner] =

@@ -34,8 +34,8 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
     }
 }
 
-/// Numbers of `setup` that were drawn for the base, as `validation/table.py` names them.
-pub(super) fn proportions(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
+/// Numbers of `setup` that were drawn for the base.
+pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
     let (plate, outer, inner) = (&setup.plate, &setup.outer, &setup.inner);
     vec![
         ("thickness over radius of the plate", plate.thickness / plate.radius),

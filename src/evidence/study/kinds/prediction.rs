@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::evidence::study::{Cell, Claim, Note, Study};
 use crate::format::percent_above;
+use crate::kinds::MEASURES;
 use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::colours::{MODELS, hex};
 use crate::plot::polyline::path;
@@ -265,7 +266,7 @@ fn over_patch(quantity: &str) -> Markup {
         .filter_map(|scene| {
             let (_, seen) = error(scene, Model::C, quantity)?;
             let shown = seen.error.clamp(ERRORS[0], ERRORS[1]);
-            Some((scene.place?.patch_over_thickness, shown, seen.error > seen.noise))
+            Some((*scene.results.get(MEASURES[0])?, shown, seen.error > seen.noise))
         })
         .collect();
     let x = PlotAxis::over(points.iter().map(|point| point.0), true).widened(0.03);

@@ -1,0 +1,30 @@
+//! What makes a scene similar to others of the validation base.
+
+use super::Kind;
+use crate::result::Summary;
+use crate::scene::Scene;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Group and dimensionless numbers of a scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Similarity {
+    /// Group of the validation base.
+    pub group: &'static str,
+    /// Numbers of the scene, by name.
+    pub numbers: BTreeMap<&'static str, f64>,
+    /// Numbers of the result of model C, by name, positive.
+    pub results: BTreeMap<&'static str, f64>,
+}
+
+impl Similarity {
+    /// Of `scene`, where model C has the summary `continuum`.
+    ///
+    /// # Errors
+    /// A sentence of scenes that the base has none like, and where the result does not tell.
+    pub fn of(kind: &dyn Kind, scene: &Scene, continuum: &Summary) -> Result<Self, String> {
+        let results = kind.result_numbers(scene, continuum).ok_or("the contact radius is not known")?;
+        let numbers = kind.numbers(scene).into_iter().collect();
+        Ok(Self { group: kind.stratum(scene)?, numbers, results: results.into_iter().collect() })
+    }
+}
