@@ -124,7 +124,9 @@ def film(point: Point) -> Table:
     if ratio := point.some(0.3, lambda at: 0.3 + 0.7 * at):
         scene["fluid"]["added_mass_frequency_ratio"] = ratio
     # the film slows the inner body for ever: both sides are compared at one time
-    scene["run"] = {"end_time": 4.0 * _duration(scene)}
+    # after the contact, which a flexible plate prolongs
+    period = _first_period(scene["plate"], scene["materials"]["plate"])
+    scene["run"] = {"end_time": 4.0 * _duration(scene) + period}
     return scene
 
 

@@ -1,5 +1,6 @@
 //! The group of the validation base that an impact on a body belongs to, and its numbers.
 
+use crate::contact::Hertz;
 use crate::kinds::general_impact::GeneralImpact;
 use crate::result::Summary;
 use crate::scene::Shape;
@@ -47,11 +48,13 @@ pub(super) fn numbers(setup: &GeneralImpact) -> Vec<(&'static str, f64)> {
     ]
 }
 
-/// Numbers of its result `summary`.
+/// Numbers of its result `summary`; the contact radius is that of Hertz on a flat face.
 pub(super) fn result_numbers(setup: &GeneralImpact, summary: &Summary) -> Option<Vec<(&'static str, f64)>> {
-    let radius = summary.contact_pressure.as_ref()?.outer.contact_radius;
+    let outer = &setup.outer;
+    let tip = outer.shape.tip_radius();
+    let radius =
+        Hertz::new(tip, &outer.material, &setup.face()).contact_radius(summary.value("outer_force_peak")?);
     let period = summary.value("outer_contact_end")? * summary.value("first_frequency")?;
-    let numbers =
-        vec![("contact/period", period), ("patch/tip radius", radius / setup.outer.shape.tip_radius())];
+    let numbers = vec![("contact/period", period), ("patch/tip radius", radius / tip)];
     numbers.iter().all(|(_, value)| value.is_finite() && *value > 0.0).then_some(numbers)
 }

@@ -2,11 +2,11 @@
 
 mod features;
 mod place;
-mod stratum;
+mod similar;
 
 pub use impactcheck_physics::kinds::plate_impact::*;
 
-use super::{Approach, ClosedForm, Feature, MEASURES, Place, Starter, Use, Value};
+use super::{Approach, ClosedForm, Feature, Place, Starter, Use, Value};
 use crate::error::Result;
 use crate::result::Summary;
 use crate::scene::{Edge, Geometry, Scene, Shape};
@@ -58,17 +58,15 @@ impl super::Kind for Kind {
     }
 
     fn stratum(&self, scene: &Scene) -> std::result::Result<&'static str, String> {
-        stratum::stratum(scene.plate_impact().map_err(|error| error.to_string())?)
+        similar::stratum(scene.plate_impact().map_err(|error| error.to_string())?)
     }
 
     fn numbers(&self, scene: &Scene) -> Vec<(&'static str, f64)> {
-        scene.plate_impact().map(stratum::numbers).unwrap_or_default()
+        scene.plate_impact().map(similar::numbers).unwrap_or_default()
     }
 
     fn result_numbers(&self, scene: &Scene, summary: &Summary) -> Option<Vec<(&'static str, f64)>> {
-        let place = place::anywhere(scene.plate_impact().ok()?, summary)?;
-        let film = place.stokes_number.map(|number| ("Stokes number of the film", number));
-        Some(MEASURES.into_iter().zip(place.measures()).chain(film).collect())
+        similar::result_numbers(scene.plate_impact().ok()?, scene.run.end_time, summary)
     }
 
     fn yields(&self, scene: &Scene) -> bool {

@@ -11,25 +11,25 @@ const DIGITS: usize = 7;
 
 /// The place of `setup` with the result `summary`; `None` beside the centre of the plate or at an angle, or if the result does not tell.
 pub(super) fn place(setup: &PlateImpact, summary: &Summary) -> Option<Place> {
-    anywhere(setup, summary).filter(|_| setup.outer.is_centred())
-}
-
-/// The same, wherever the plate is struck.
-pub(super) fn anywhere(setup: &PlateImpact, summary: &Summary) -> Option<Place> {
-    let pressure = summary.contact_pressure.as_ref()?;
+    let pressure = summary.contact_pressure.as_ref().filter(|_| setup.outer.is_centred())?;
     let patch = pressure.outer.contact_radius.max(pressure.inner.contact_radius);
     let contact = summary.value("outer_contact_end")? * summary.value("first_frequency")?;
     let [outer, inner] =
         [(&setup.outer.shape, &setup.outer.material), (&setup.inner.shape, &setup.inner.material)]
             .map(|(shape, material)| shape.mass(material));
-    let film = setup.fluid.as_ref().filter(|fluid| fluid.squeeze_film);
-    let stokes_number = film.map(|fluid| {
-        let tip = setup.inner.shape.tip_radius();
-        rounded(inner * setup.outer.speed / (6.0 * PI * fluid.viscosity * tip * tip), DIGITS)
-    });
+    let stokes_number = stokes_number(setup).map(|value| rounded(value, DIGITS));
     let measures = [patch / setup.plate.thickness, contact, inner / outer];
     let [patch_over_thickness, contact_over_period, mass_ratio] =
         measures.map(|value| rounded(value, DIGITS));
     let is_known = measures.iter().all(|measure| measure.is_finite() && *measure > 0.0);
     is_known.then_some(Place { patch_over_thickness, contact_over_period, mass_ratio, stokes_number })
+}
+
+/// Stokes number of the squeeze film, m v/(6 pi mu R^2) of the inner body at the outer one's speed; `None` without a film.
+pub(super) fn stokes_number(setup: &PlateImpact) -> Option<f64> {
+    let fluid = setup.fluid.as_ref().filter(|fluid| fluid.squeeze_film)?;
+    let inner = &setup.inner;
+    let tip = inner.shape.tip_radius();
+    let mass = inner.shape.mass(&inner.material);
+    Some(mass * setup.outer.speed / (6.0 * PI * fluid.viscosity * tip * tip))
 }

@@ -1,6 +1,10 @@
 //! The group of the validation base that a plate impact belongs to.
 
+use super::place::stokes_number;
+use crate::contact::Hertz;
+use crate::kinds::MEASURES;
 use crate::kinds::plate_impact::PlateImpact;
+use crate::result::Summary;
 use crate::scene::{Edge, Shape};
 
 /// The group of `setup`, as `validation/draw.py` names it.
@@ -53,4 +57,28 @@ pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
         ("coefficient of friction", setup.friction),
         ("offset over radius of the plate", outer.offset / plate.radius),
     ]
+}
+
+/// Numbers of its result `summary`, wherever the plate is struck and whatever its materials do: the contact radius is that of Hertz at the
+/// force peak.
+pub(super) fn result_numbers(
+    setup: &PlateImpact,
+    end_time: Option<f64>,
+    summary: &Summary,
+) -> Option<Vec<(&'static str, f64)>> {
+    let bodies = [
+        ("outer_force_peak", &setup.outer.shape, &setup.outer.material),
+        ("inner_force_peak", &setup.inner.shape, &setup.inner.material),
+    ];
+    let patches = bodies.map(|(peak, shape, material)| {
+        let law = Hertz::new(shape.tip_radius(), material, &setup.plate.material);
+        summary.value(peak).map_or(0.0, |force| law.contact_radius(force))
+    });
+    let [outer, inner] = bodies.map(|(_, shape, material)| shape.mass(material));
+    // a run that ends during the contact tells the least
+    let contact = summary.value("outer_contact_end").or(end_time)? * summary.value("first_frequency")?;
+    let measures = [patches[0].max(patches[1]) / setup.plate.thickness, contact, inner / outer];
+    let film = stokes_number(setup).map(|number| ("Stokes number of the film", number));
+    let numbers: Vec<(&str, f64)> = MEASURES.into_iter().zip(measures).chain(film).collect();
+    numbers.iter().all(|(_, value)| value.is_finite() && *value > 0.0).then_some(numbers)
 }
