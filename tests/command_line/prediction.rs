@@ -9,6 +9,8 @@ fn the_prediction_does_not_depend_on_the_model_that_runs() {
     let expected = of(&["--model", "C"]);
     let interval = &expected["prediction"]["efficiency"];
     assert!(interval["low"].as_f64() < interval["high"].as_f64());
+    assert_eq!(expected["similarity"]["group"], "dry");
+    assert!(expected["similarity"]["results"]["patch/thickness"].as_f64() > Some(0.05));
     for options in [&["--model", "A"][..], &["--model", "C", "--modes", "2"], &["--tolerance", "1e-3"]] {
         assert_eq!(of(options)["prediction"], expected["prediction"], "{options:?}");
     }
@@ -19,10 +21,10 @@ fn the_prediction_does_not_depend_on_the_model_that_runs() {
 /// A scene unlike those of the base has no intervals, and the reason where details are wanted.
 #[test]
 fn a_scene_unlike_those_of_the_base_has_a_reason() {
-    let scene = "scenes/validation/squeeze-film.toml";
+    let scene = "scenes/validation/repeated-r10.toml";
     let found = json(&["reduced", scene, "--model", "A", "--json"]);
     let reason = found["prediction_reason"].as_str().expect("a reason");
-    assert!(found["prediction"].is_null() && reason.contains("of the group `film`"), "{reason}");
+    assert!(found["prediction"].is_null() && reason.contains("no repeated impacts"), "{reason}");
     assert!(!impactcheck(&["reduced", scene, "--model", "A"]).out.contains("a reference would find"));
     let verbose = impactcheck(&["-v", "reduced", scene, "--model", "A"]).error;
     assert!(flat(&verbose).contains(&flat(reason)), "{verbose}");
