@@ -71,9 +71,9 @@ fn a_history_has_the_format_its_ending_names() {
 fn a_reduced_model_alone_has_a_page() {
     let folder = tempfile::tempdir().unwrap();
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/examples/rocker-flight.toml");
-    run(folder.path(), &["reduced", scene, "--model", "B", "--page", "page.html"], 0);
+    let arguments = ["reduced", scene, "--model", "B", "--page", "page.html", "--json"];
+    let json = run(folder.path(), &arguments, 0).stdout;
     let page = fs::read_to_string(folder.path().join("page.html")).unwrap();
-    let json = run(folder.path(), &["reduced", scene, "--model", "B", "--json"], 0).stdout;
     let summary: serde_json::Value = serde_json::from_slice(&json).unwrap();
     let efficiency = summary["efficiency"].as_f64().unwrap();
     const PANELS: [&str; 2] = ["Velocity in mm/s", "Contact force in N"];
