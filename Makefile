@@ -4,7 +4,8 @@
 # make wheel    the Python package, into target/wheels, and a clean environment with it: target/wheel-python
 # make solutions computes the stored references of the shipped scenes again
 # make validation  solves the random scenes that the table of predictions lacks: hours; goes on where it was stopped
-#                (SHARD=2/4: the second of four machines; without validation/base.jsonl it solves all)
+#                (SHARD=2/4: the second of four machines, whose rows are then joined by validation/table.py; LONGEST=600: scenes
+#                that take longer than these seconds wait)
 # make evidence  slow evidence: references of all scenes and the truth of their bands, model C on the validation scenes,
 #                studies, run time against error, random impacts, killed runs, FEniCSx's releases (an hour or more; the last
 #                needs root)
@@ -96,7 +97,7 @@ validation: setup
 	cargo build --release
 	$(TOOL) validation/draw.py $(OUT)/validation/scenes
 	IMPACTCHECK_PYTHON=$(PYTHON) $(TOOL) validation/solve.py $(OUT)/validation/scenes $(OUT)/validation/rows \
-	    --known validation/base.jsonl $(if $(SHARD),--shard $(SHARD))
+	    --known validation/base.jsonl $(if $(SHARD),--shard $(SHARD)) $(if $(LONGEST),--longest $(LONGEST))
 	$(TOOL) validation/table.py $(OUT)/validation/rows validation/base.jsonl
 
 evidence: setup wheel
@@ -111,7 +112,7 @@ evidence: setup wheel
 	$(RUN) --store $(OUT)/evidence gate $(ASIDE) --models B --out $(OUT)/evidence-aside
 	# what the map of validated scenes knows without these references
 	$(RUN) --store $(OUT)/evidence coverage --record
-	$(RUN) --store $(OUT)/evidence study auto --out $(OUT)/studies
+	for study in prediction auto; do $(RUN) study $$study --out $(OUT)/studies || exit 1; done
 	$(PYTHON) -m fem_reference bands --random 50 --out $(OUT)/bands
 	$(PYTHON) -m fem_reference body-bands --random 8 --out $(OUT)/bands
 	$(PYTHON) -m fem_reference yielding --out reports/yielding.md

@@ -2,9 +2,9 @@
 
     python validation/finer.py SCENES validation/base.jsonl ROWS [--count 24] [--program PATH]
 
-solves the least expensive scenes of the table again at `--resolution paper`, twice as fine in every
-direction, as far as `ROWS/<scene>.json` is not there yet, and prints quantiles of the differences
-over the bands of the table.
+solves the least expensive scenes of the table again at `--resolution paper`, with 1.5 times the
+elements in every direction, as far as `ROWS/<scene>.json` is not there yet, and prints quantiles of
+the differences over the bands of the table.
 """
 
 from __future__ import annotations
@@ -40,7 +40,9 @@ def ratios(before: dict[str, Any], finer: dict[str, Any]) -> list[float]:
     found = []
     for name, (value, band, *_) in before["values"].items():
         exact, rest = finer.get(name, (None, None))
-        if value is not None and band and exact is not None and rest <= FINE * band:
+        if value is None or not band or exact is None or rest is None:
+            continue
+        if rest <= FINE * band:
             found.append(abs(value - exact) / band)
     return found
 
@@ -68,8 +70,11 @@ def main() -> None:
                 continue
             target.write_text(json.dumps(finer), encoding="utf-8")
         found += ratios(before, json.loads(target.read_text(encoding="utf-8")))
+    if not found:
+        parser.error("no finer mesh decides a value")
+    rms = float(np.sqrt(np.mean(np.square(found))))
     shown = ", ".join(f"{100 * q:g} %: {np.quantile(found, q):.2f}" for q in QUANTILES)
-    print(f"{len(found)} values; difference over the band at the quantiles {shown}")
+    print(f"{len(found)} values; difference over the band: rms {rms:.2f}, at the quantiles {shown}")
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ none, and waits for a run that allows more.
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import shutil
 import subprocess
@@ -100,7 +101,11 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
         ]
         ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=longest)
         continuum = _continuum(path, program) if ran.stdout.strip() else None
-    found: Row = {"scene": path.stem, "stratum": path.stem.rsplit("-", 1)[0]}
+    found: Row = {
+        "scene": path.stem,
+        "stratum": path.stem.rsplit("-", 1)[0],
+        "content": content(path),
+    }
     if ran.stdout.strip():
         found |= row(json.loads(ran.stdout), continuum)
     else:
@@ -120,10 +125,15 @@ def _shard(text: str) -> tuple[int, int]:
     return number, count
 
 
-def _names(table: Path | None) -> set[str]:
-    """Of the scenes in a table."""
+def content(path: Path) -> str:
+    """Short hash of a scene file: a scene that is drawn otherwise is solved again."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
+
+
+def _contents(table: Path | None) -> dict[str, str]:
+    """Of the scenes in a table, by name."""
     lines = table.read_text(encoding="utf-8").splitlines() if table and table.exists() else []
-    return {json.loads(line)["scene"] for line in lines}
+    return {row["scene"]: row["content"] for row in map(json.loads, lines)}
 
 
 def main() -> None:
@@ -137,13 +147,13 @@ def main() -> None:
     parser.add_argument("--program", type=Path, default=PROGRAM)
     given = parser.parse_args()
     number, count = given.shard
-    known = _names(given.known)
+    known = _contents(given.known)
     given.rows.mkdir(parents=True, exist_ok=True)
     # from every stratum early
     paths = sorted(given.scenes.glob("*.toml"), key=lambda path: (path.stem[-3:], path.stem))
     for path in paths[number - 1 :: count]:
         target = given.rows / f"{path.stem}.json"
-        if path.stem not in known and not target.exists():
+        if known.get(path.stem) != content(path) and not target.exists():
             try:
                 found = solve(path, given.program, given.longest)
             except subprocess.TimeoutExpired:

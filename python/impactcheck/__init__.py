@@ -59,7 +59,8 @@ def reduced(
 
     Returns:
         Summary and curves. `prediction` has for each quantity the interval (`low` to `high`) that
-        holds what a reference would find with 95 %; or it is None, and `prediction_reason` says why.
+        holds what a reference would find with 95 % on infinitely fine meshes; or it is None, and
+        `prediction_reason` states why. For models A and B, model C runs too.
 
     Raises:
         Error: If the model fails, or is none of the scene's.
@@ -76,9 +77,9 @@ def sweep(
 ) -> list[Result]:
     """Run a reduced model of many scenes side by side, in their order.
 
-    Each result is what :func:`reduced` gives, without `prediction`; plates that were solved once serve all of the same
-    shape. More than some ten thousands fill the memory with curves: `impactcheck study sweep`
-    keeps the quantities alone, in files, and goes on where it was ended.
+    Each result is what :func:`reduced` gives, without `prediction`; plates that were solved once
+    serve all of the same shape. More than some ten thousands fill the memory with curves:
+    `impactcheck study sweep` keeps the quantities alone, in files, and goes on where it was ended.
 
     Args:
         scenes: The impacts.

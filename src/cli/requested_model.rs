@@ -72,11 +72,14 @@ pub(super) fn within_bounds(error: f64, text: &str) -> std::result::Result<f64, 
 pub(super) fn choice_in_words(choice: &Choice) -> String {
     let percent = |error: Option<f64>| error.map_or("unknown".to_owned(), |e| format!("{:.2} %", 100.0 * e));
     let mut lines = vec![format!(
-        "auto, tolerance {:.4} % of {}: predicted error {} ({:.0} %)",
+        "auto, tolerance {:.4} % of {}: predicted error {}",
         100.0 * choice.tolerance,
         choice.covers.join(", "),
-        percent(choice.estimated_error),
-        100.0 * choice.coverage
+        choice.estimated_error.map_or("unknown".to_owned(), |e| format!(
+            "{:.2} % ({:.0} %)",
+            100.0 * e,
+            100.0 * choice.coverage
+        ))
     )];
     for tried in &choice.tried {
         let plural = if tried.modes == 1 { "" } else { "s" };

@@ -23,7 +23,8 @@ impl Similarity {
     /// # Errors
     /// A sentence of scenes that the base has none like, and where the result does not tell.
     pub fn of(kind: &dyn Kind, scene: &Scene, continuum: &Summary) -> Result<Self, String> {
-        let results = kind.result_numbers(scene, continuum).ok_or("the contact radius is not known")?;
+        let results =
+            kind.result_numbers(scene, continuum).ok_or("model C does not determine the contact")?;
         let numbers = kind.numbers(scene).into_iter().collect();
         Ok(Self { group: kind.stratum(scene)?, numbers, results: results.into_iter().collect() })
     }

@@ -1,31 +1,29 @@
 //! `auto`: the simplest reduced model that is predicted to be within a tolerance of a reference.
 //!
-//! Model C runs first, as it is by default. A simpler model may be off by what it differs by from model C of the same scene, and by
-//! what model C may be off by itself.
+//! Model C runs first, as it is by default. The predicted error of a simpler model is its difference from model C plus the predicted error
+//! of model C.
 
 use super::{LEVEL, predicted_errors, scale};
+use crate::dynamics::error_control::LOW_ACCURACY;
 use crate::error::Result;
-use crate::kinds;
 use crate::result::{CandidateModel, Choice, Summary};
 use crate::scene::{Model, Scene};
 use std::collections::BTreeMap;
 
 /// Tolerance when the user names none.
 pub const DEFAULT_TOLERANCE: f64 = 0.01;
-/// Share of the tolerance that is left to the time integration, and the largest error of it with which contacts are counted right.
-const INTEGRATION: (f64, f64) = (0.003, 1e-4);
+/// Share of the tolerance that the time integration may take.
+const INTEGRATION: f64 = 0.003;
 /// Quantities that a tolerance covers. Times of release and numbers of contacts are not covered: a contact that just closes once more
 /// changes them by a jump.
 pub const COVERED: [&str; 4] = ["efficiency", "outer_velocity_final", "outer_force_peak", "inner_force_peak"];
-/// What there is besides model C, by the number of modes, the simplest first.
-const SIMPLER: [(Model, usize); 3] = [(Model::A, 1), (Model::B, 16), (Model::B, 32)];
-
 /// A model and its number of modes; `None`: as many as the model takes by itself.
 pub type Candidate = (Model, Option<usize>);
 
 /// Relative tolerance of the time integration for a tolerance of `auto`.
 pub fn integration_tolerance(tolerance: f64) -> f64 {
-    (INTEGRATION.0 * tolerance).min(INTEGRATION.1)
+    // above this many contacts amplify the error
+    (INTEGRATION * tolerance).min(LOW_ACCURACY)
 }
 
 /// The model of `scene` for a relative `tolerance`, and why; `run` gives the result of a model.
@@ -66,11 +64,16 @@ pub fn choose(
         }
     };
     let exact = |name: &str| continuum.value(name);
-    let judge = Judge { exact: &exact, own: &own, speed: super::impact_speed(scene) };
+    let judge = Judge { continuum: &exact, own: &own, speed: super::impact_speed(scene) };
     let mut tried = Vec::new();
-    let simpler = SIMPLER.into_iter().filter(|(model, _)| kinds::of(scene).models().contains(model));
-    for (model, modes) in simpler {
-        let Ok(summary) = run((model, Some(modes))) else { continue };
+    let mut modes_of_b = None;
+    for model in [Model::A, Model::B, Model::B] {
+        // model B once more with twice as many modes
+        let Ok(summary) = run((model, modes_of_b.map(|modes: usize| 2 * modes))) else { continue };
+        let modes = summary.modes.unwrap_or(0);
+        if model == Model::B {
+            modes_of_b = Some(modes);
+        }
         let error = judge.largest(|name| summary.value(name));
         tried.push(candidate(model, modes, error));
         if let Some((error, _)) = error.filter(|(error, _)| *error <= tolerance) {
@@ -82,9 +85,10 @@ pub fn choose(
     let error = judge.largest(exact);
     tried.push(candidate(Model::C, modes, error));
     let met = error.is_some_and(|(error, _)| error <= tolerance);
-    let reason = match met {
-        true => "model C is the only one that is predicted to be within the tolerance",
-        false => "no reduced model is predicted to be within the tolerance: model C is nearest",
+    let reason = match error {
+        Some(_) if met => "model C is the only one that is predicted to be within the tolerance",
+        Some(_) => "no reduced model is predicted to be within the tolerance: model C is nearest",
+        None => "model C is taken without an estimate: too few references determine the quantities",
     };
     Ok(((Model::C, None), choice(chosen(tried), (error.map(|(error, _)| error), met), reason.to_owned())))
 }
@@ -92,8 +96,8 @@ pub fn choose(
 /// What models of a scene are judged by.
 pub struct Judge<'a> {
     /// Values of model C, SI.
-    pub exact: &'a dyn Fn(&str) -> Option<f64>,
-    /// What model C is predicted to be off by, relative as [`scale`] has it.
+    pub continuum: &'a dyn Fn(&str) -> Option<f64>,
+    /// Predicted errors of model C, relative as [`scale`] has it.
     pub own: &'a BTreeMap<&'static str, f64>,
     /// Of the impact, m/s.
     pub speed: f64,
@@ -103,8 +107,8 @@ impl Judge<'_> {
     /// Error predicted of the quantity `name` for a model with these values, relative; `None` if it is not determined.
     pub fn error(&self, name: &str, value: &dyn Fn(&str) -> Option<f64>) -> Option<f64> {
         let own = self.own.get(name)?;
-        let scale = scale(name, self.exact, self.speed).filter(|scale| *scale > 0.0)?;
-        Some(((value(name)? - (self.exact)(name)?) / scale).abs() + own)
+        let scale = scale(name, self.continuum, self.speed).filter(|scale| *scale > 0.0)?;
+        Some(((value(name)? - (self.continuum)(name)?) / scale).abs() + own)
     }
 
     /// The largest of the quantities [`COVERED`], and which that is; `None` if one is not determined.

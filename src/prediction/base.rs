@@ -15,6 +15,8 @@ pub struct SolvedScene {
     pub hash: String,
     /// Group of similar scenes that it was drawn in.
     pub stratum: String,
+    /// Internal consistency checks that its reference fails; it is no evidence then.
+    pub unsound: Vec<String>,
     /// Speed of the outer body, m/s.
     pub speed: f64,
     /// Numbers of the scene that were drawn, by name.

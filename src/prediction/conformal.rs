@@ -2,10 +2,10 @@
 //!
 //! Papadopoulos, Vovk and Gammerman, Regression conformal prediction with nearest neighbours, J. Artificial Intelligence Research
 //! 40 (2011) 815: an error is measured in units of what its neighbours' errors let expect; the quantile of these ratios over all cases,
-//! times what the neighbours of a new case let expect, holds the new error with the stated probability, whatever the errors' distribution.
+//! times the median of a new case's neighbours, holds the new error with the stated probability, whatever the errors' distribution.
 //!
-//! Errors are seen through references that have errors of their own. As both are independent, their squares add up: what a reference may
-//! be off by is taken out of the errors that calibrate, and added where new errors are judged.
+//! References have errors of their own. As both are independent, their mean squares add up: the standard deviation of the reference's error
+//! is removed from the errors that calibrate, and added where errors against references are judged.
 
 /// Neighbours that an error is compared with.
 const NEIGHBOURS: usize = 12;
@@ -19,7 +19,7 @@ pub struct SeenError {
     pub place: Vec<f64>,
     /// Magnitude of the error.
     pub error: f64,
-    /// What it was seen with may be off by.
+    /// Standard deviation of the error of the reference that it was measured with.
     pub noise: f64,
 }
 
@@ -149,7 +149,7 @@ mod tests {
             let mut normal = || (-2.0 * random.f64().ln()).sqrt() * (TAU * random.f64()).cos();
             let mut case = || {
                 let (own, noise) = (normal(), normal());
-                (SeenError { place: vec![0.0], error: (own + noise).abs(), noise: 1.96 }, own.abs())
+                (SeenError { place: vec![0.0], error: (own + noise).abs(), noise: 1.0 }, own.abs())
             };
             let known: Vec<SeenError> = (0..100).map(|_| case().0).collect();
             let half = ErrorScale::new(&known, 0.95).unwrap().half_width(&[0.0]);

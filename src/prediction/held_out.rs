@@ -21,7 +21,7 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Whether the interval holds the reference's value, but for what that may be off by itself.
+    /// Whether the interval holds the reference's value, the error of that added.
     pub fn is_within(&self) -> bool {
         self.seen.is_within(self.half_width)
     }
@@ -47,7 +47,10 @@ pub fn held_out() -> Vec<HeldOut> {
 }
 
 fn of_stratum(stratum: &str) -> Vec<HeldOut> {
-    let all: Vec<&'static SolvedScene> = solved().iter().filter(|scene| scene.stratum == stratum).collect();
+    let mut all: Vec<&'static SolvedScene> =
+        solved().iter().filter(|scene| scene.stratum == stratum).collect();
+    // the order of the drawn scenes would part their edges
+    all.sort_by(|a, b| a.hash.cmp(&b.hash));
     if all.len() < HALVES {
         return Vec::new();
     }
@@ -57,7 +60,7 @@ fn of_stratum(stratum: &str) -> Vec<HeldOut> {
             let calibrates: Vec<&SolvedScene> = half(1 - odd).collect();
             let mut found: Vec<HeldOut> =
                 half(odd).map(|scene| HeldOut { scene, quantities: BTreeMap::new() }).collect();
-            for quantity in all[0].values.keys() {
+            for quantity in quantities(&all) {
                 let known = errors(&calibrates, quantity);
                 let Some(calibrated) = ErrorScale::new(&known, LEVEL) else { continue };
                 for held in &mut found {
@@ -71,7 +74,12 @@ fn of_stratum(stratum: &str) -> Vec<HeldOut> {
         .collect()
 }
 
-/// Largest and smallest count of `within` out of `count` that the level lets expect in 95 of 100 cases.
+/// Names of the quantities of `scenes`.
+pub fn quantities(scenes: &[&'static SolvedScene]) -> BTreeSet<&'static str> {
+    scenes.iter().flat_map(|scene| scene.values.keys().map(String::as_str)).collect()
+}
+
+/// Smallest and largest number of values within their interval out of `count`, in 95 of 100 cases at the stated level.
 pub fn expected(count: usize) -> [usize; 2] {
     let chances = binomial(count, LEVEL);
     let mut tail = 0.0;

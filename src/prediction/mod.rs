@@ -29,15 +29,17 @@ const VELOCITY: &str = "_velocity_final";
 /// Begin of the names of a sphere's velocities, and end of those of directions.
 const COMPONENT: &str = "sphere_velocity";
 const ANGLE: &str = "_angle";
+/// End of the names of restitutions.
+const RESTITUTION: &str = "_restitution";
 /// Digits shown of an interval.
 const DIGITS: usize = 4;
 /// Widest band over the scale with which a reference determines a quantity.
 const DETERMINED: f64 = 0.05;
-/// Share of its band by which a reference of the base is off in 95 % of all cases: the bands are wider than they need to be. Against
-/// meshes with twice the elements in every direction (`validation/finer.py`).
-const NOISE: f64 = 0.5;
+/// Standard deviation of the errors of the base's references over their bands, which are wider than they need to be; against meshes with
+/// 1.5 times the elements in every direction (`validation/finer.py`).
+const NOISE: f64 = 0.27;
 
-/// What a reference would find of a quantity.
+/// What a reference would find of a quantity on infinitely fine meshes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Interval {
     /// Least value, SI.
@@ -143,7 +145,11 @@ impl Similar {
             let error = ErrorScale::new(&errors, LEVEL).filter(|_| errors.len() >= FEWEST)?;
             Some((quantity.name, (error.half_width(&place), errors.len())))
         };
-        Ok(continuum.quantities.iter().filter_map(half_width).collect())
+        let found: BTreeMap<_, _> = continuum.quantities.iter().filter_map(half_width).collect();
+        match found.is_empty() {
+            true => Err(format!("too few references of the group `{}` determine their values", self.stratum)),
+            false => Ok(found),
+        }
     }
 
     /// Refuses a number that lies beyond those of all scenes.
@@ -176,8 +182,9 @@ pub fn error(scene: &SolvedScene, model: Model, quantity: &str) -> Option<(f64, 
     let band = values.band? / scale;
     let signed = (scene.of_model(model, quantity)? - values.reference?) / scale;
     let place = coordinates(scene.results.values(), scene.numbers.values());
+    let is_known = !place.is_empty() && scene.unsound.is_empty();
     let seen = SeenError { place, error: signed.abs(), noise: NOISE * band };
-    (band <= DETERMINED).then_some((signed, seen))
+    (is_known && band <= DETERMINED).then_some((signed, seen))
 }
 
 /// Where a scene lies, for neighbours: the logarithms of the numbers of its result, or its own numbers if the result has none.
@@ -190,13 +197,14 @@ fn coordinates<'a>(
 }
 
 /// What the error of a quantity is relative to, by the values of a result and the `speed` of its impact in m/s: the quantity itself;
-/// of a velocity the speed, of a direction 1 rad; of an efficiency and a force that are negligible what is not.
+/// of a velocity the speed, of a direction 1 rad, of a restitution 1; of an efficiency and a force that are negligible what is not.
 pub fn scale(quantity: &str, value: impl Fn(&str) -> Option<f64>, speed: f64) -> Option<f64> {
     let own = value(quantity)?.abs();
     Some(match quantity {
         "efficiency" => own.max(MINOR),
         "inner_force_peak" => own.max(MINOR * value("outer_force_peak")?),
-        _ if quantity.ends_with(VELOCITY) => speed,
+        _ if quantity.ends_with(VELOCITY) => Some(speed).filter(|speed| speed.is_finite())?,
+        _ if quantity.ends_with(RESTITUTION) => 1.0,
         _ if quantity.starts_with(COMPONENT) => value("sphere_speed")?,
         _ if quantity.ends_with(ANGLE) => 1.0,
         _ => own,

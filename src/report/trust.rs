@@ -127,15 +127,18 @@ pub(crate) fn predicted(
         Err(reason) => return Some(format!("nothing is predicted: {reason}")),
     };
     let exact = |name: &str| continuum.value(name);
-    let judge = Judge { exact: &exact, own: &own, speed: impact_speed(scene) };
+    let judge = Judge { continuum: &exact, own: &own, speed: impact_speed(scene) };
     let value = |name: &str| model.summary.value(name);
-    let efficiency = judge.error("efficiency", &value)?;
-    let peaks = ["outer_force_peak", "inner_force_peak"].map(|name| judge.error(name, &value).unwrap_or(0.0));
-    Some(format!(
-        "predicted by other scenes (95 %): efficiency within {}, force peaks within {}",
-        percent_above(efficiency),
-        percent_above(peaks[0].max(peaks[1]))
-    ))
+    let largest = |names: &[&str]| names.iter().filter_map(|name| judge.error(name, &value)).reduce(f64::max);
+    let parts = [
+        ("efficiency", largest(&["efficiency"])),
+        ("force peaks", largest(&["outer_force_peak", "inner_force_peak"])),
+    ];
+    let parts: Vec<String> = parts
+        .into_iter()
+        .filter_map(|(what, error)| Some(format!("{what} within {}", percent_above(error?))))
+        .collect();
+    (!parts.is_empty()).then(|| format!("predicted by other scenes (95 %): {}", parts.join(", ")))
 }
 
 #[cfg(test)]

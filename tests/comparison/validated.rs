@@ -1,5 +1,4 @@
-//! The validations that the project brings along are those of its scenes, of its models as they are and of its references;
-//! what is near by is told from what is not.
+//! The validations that the project brings along are those of its scenes, of its models as they are and of its references.
 
 use impactcheck::comparison::compare_scene;
 use impactcheck::kinds::plate_impact::reduced::Reduced;

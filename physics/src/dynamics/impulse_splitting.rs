@@ -24,8 +24,6 @@ pub struct SplittingPeak {
     pub force_peak: f64,
     /// Impulse, N s.
     pub impulse: f64,
-    /// Number of separate contacts.
-    pub contacts: u32,
 }
 
 /// Both contacts of the impact of `system` until no further one is possible, without residual flexibility; `None` if that takes too long,
@@ -41,7 +39,6 @@ pub fn run(system: &System) -> Option<[SplittingPeak; 2]> {
     let (q, v) = system.initial_state();
     let (mut q, mut v) = (in_blocks(&q), in_blocks(&v));
     let mut contacts = [SplittingPeak::default(); 2];
-    let mut before = [0.0; 2];
     for n in 0..MAX_STEPS {
         let mut sums = [f64x4::ZERO; 2];
         for (k, block) in batch.blocks.iter().enumerate() {
@@ -55,12 +52,10 @@ pub fn run(system: &System) -> Option<[SplittingPeak; 2]> {
         for (k, block) in batch.blocks.iter().enumerate() {
             v[k] -= h * (block.approach[0] * force[0] + block.approach[1] * force[1]);
         }
-        for ((contact, force), before) in contacts.iter_mut().zip(force).zip(before) {
-            contact.contacts += u32::from(force > 0.0 && before == 0.0);
+        for (contact, force) in contacts.iter_mut().zip(force) {
             contact.force_peak = contact.force_peak.max(force);
             contact.impulse += h * force;
         }
-        before = force;
         if n % LOOKS == 0 && force == [0.0; 2] {
             let [q, v]: [&[f64]; 2] = [&q, &v].map(|blocks| bytemuck::cast_slice(blocks));
             if free_flight::is_over(system, &q[..system.size()], &v[..system.size()]) {

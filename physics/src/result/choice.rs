@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct CandidateModel {
     /// A, B or C.
     pub model: String,
-    /// Elastic modes; of model C bending modes alone.
+    /// Elastic modes.
     pub modes: usize,
     /// Largest predicted relative error of the quantities covered; `None` if there is no prediction.
     pub estimated_error: Option<f64>,
@@ -26,11 +26,11 @@ pub struct Choice {
     pub covers: Vec<String>,
     /// The prediction for the model chosen; `None` if there is none.
     pub estimated_error: Option<f64>,
-    /// Probability that the true error is within the estimate.
+    /// Probability that the true error of each quantity is within the estimate.
     pub coverage: f64,
     /// Whether the prediction is within the tolerance.
     pub met: bool,
-    /// The models considered, in the order of their cost.
+    /// The models considered, the simplest first.
     pub tried: Vec<CandidateModel>,
     /// Why, in a sentence.
     pub reason: String,

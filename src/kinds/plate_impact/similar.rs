@@ -21,6 +21,12 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
     if !setup.outer.is_centred() && setup.plate.edge != Edge::Clamped {
         return Err("the validation base has off-centre impacts on clamped plates only".into());
     }
+    if setup.outer.angle != 0.0 {
+        return Err("the validation base has no oblique impacts".into());
+    }
+    if setup.fluid.as_ref().is_some_and(|fluid| !fluid.squeeze_film || fluid.drag_coefficient > 0.0) {
+        return Err("the validation base has fluids with a squeeze film and without drag only".into());
+    }
     let features = [
         (setup.fluid.is_some(), "film"),
         (setup.friction > 0.0, "friction"),
@@ -54,6 +60,7 @@ pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
             inner.material.youngs_modulus / plate.material.youngs_modulus,
         ),
         ("speed of the inner body over the outer one's", inner.speed / outer.speed),
+        ("gap of the inner body over the plate's thickness", inner.gap / plate.thickness),
         ("coefficient of friction", setup.friction),
         ("offset over radius of the plate", outer.offset / plate.radius),
     ]

@@ -35,7 +35,7 @@ pub(crate) fn convergence_html(reference: &Summary) -> Markup {
             div.map { @for (name, values) in shown { (panel(name, values)) } }
             figcaption { "Mesh convergence of the reference. Each dot is a mesh; the element size of the finest one is 1. Line: fit "
                 "v + c h" sup { (ORDER) } ". Shaded: 95 % uncertainty of the value on the finest mesh. Zero is v, the value for infinitely "
-                "fine meshes." }
+                "fine meshes. Values that are zero within their uncertainty are omitted." }
         }
     }
 }

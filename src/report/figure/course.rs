@@ -11,8 +11,9 @@ const SIZE: [f64; 2] = [24.0, 7.0];
 /// The number that has come furthest of what the gate admits, as a path and its name; `None` if nothing was recorded.
 pub(crate) fn course(trends: &[Trend]) -> Option<[String; 2]> {
     let span = |trend: &Trend| trend.admissible.map_or(f64::INFINITY, |(low, high)| high - low);
-    let share = |trend: &Trend| trend.change().abs() / span(trend);
-    let furthest = trends.iter().max_by(|a, b| share(a).total_cmp(&share(b)))?;
+    let share = |trend: &Trend| Some(trend.change().abs() / span(trend)).filter(|share| share.is_finite());
+    let furthest =
+        trends.iter().max_by(|a, b| share(a).unwrap_or(0.0).total_cmp(&share(b).unwrap_or(0.0)))?;
     let (low, high) = furthest
         .points
         .iter()

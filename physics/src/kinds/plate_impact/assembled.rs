@@ -18,7 +18,7 @@ use crate::kinds::general_impact::off_centre_plate;
 use crate::scene::DEFAULT_MODES;
 use crate::scene::{Edge, Material, Model, Shape};
 
-/// Relative error of the forces at which model C, left to choose, stops adding modes.
+/// Relative error of the forces at which model C stops adding modes by itself.
 const TRUNCATION: f64 = 5e-4;
 /// Most modes that model C chooses by itself.
 const MAX_CHOSEN_MODES: usize = 64;

@@ -1,4 +1,4 @@
-//! The relative errors that tolerances of `auto` and estimates of a truncation are about.
+//! The relative errors that estimates of a truncation are about.
 
 use super::results::PlateQuantities;
 

@@ -138,11 +138,6 @@ impl Reduced {
         self.model
     }
 
-    /// Why it is this model, if it was left to the program.
-    pub fn choice(&self) -> Option<&Choice> {
-        self.choice.as_ref()
-    }
-
     /// The oscillators and contacts the model consists of.
     pub fn system(&self) -> &System {
         &self.system

@@ -1,4 +1,4 @@
-//! Impacts with plates and spheres in closed form: what a model lacks, before any continuum is meshed.
+//! Impacts with plates and spheres in closed form, which truncation errors are estimated with.
 //!
 //! The plate is Kirchhoff's or an elastic layer ([`crate::body::layer`]), which has shear, rotary inertia and the local
 //! flexibility that Kirchhoff's plate on half-spaces has not; the spheres are Lur'e's ([`crate::body::free_sphere`]). Each

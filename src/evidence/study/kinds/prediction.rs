@@ -8,12 +8,12 @@ use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::colours::{MODELS, hex};
 use crate::plot::polyline::path;
 use crate::plot::{Svg, Theme};
-use crate::prediction::held_out::{HeldOut, Judged, expected, held_out, strata};
+use crate::prediction::held_out::{HeldOut, Judged, expected, held_out, quantities, strata};
 use crate::prediction::{SolvedScene, error, refused, solved};
 use crate::scene::Model;
 use maud::{Markup, html};
 
-const COLUMNS: &str = "group, quantity, values, within, expected_from, expected_to, median_half_width, median_error, \
+const COLUMNS: &str = "group, quantity, values, within, within_alone, expected_from, expected_to, median_half_width, median_error, \
      bias_a, deviation_a, bias_b, deviation_b, bias_c, deviation_c";
 const EVERY: [Model; 3] = [Model::A, Model::B, Model::C];
 /// Largest median half width that is aimed at, in the group without features, by quantity.
@@ -34,8 +34,9 @@ pub fn run(_: &mut Note) -> Result<Study> {
     let mut rows = Vec::new();
     for stratum in strata() {
         let own: Vec<&HeldOut> = held.iter().filter(|held| held.scene.stratum == stratum).collect();
-        let scenes: Vec<&SolvedScene> = solved().iter().filter(|scene| scene.stratum == stratum).collect();
-        rows.extend(scenes[0].values.keys().map(|quantity| row(stratum, quantity, &own, &scenes)));
+        let scenes: Vec<&'static SolvedScene> =
+            solved().iter().filter(|scene| scene.stratum == stratum).collect();
+        rows.extend(quantities(&scenes).into_iter().map(|quantity| row(stratum, quantity, &own, &scenes)));
     }
     Ok(Study::new("prediction", description(&held), COLUMNS, rows, claims(&held)))
 }
@@ -52,7 +53,8 @@ fn row(
     let [from, to] = expected(count);
     let share = |n: usize| if count > 0 { Cell::Number(n as f64 / count as f64) } else { Cell::Missing };
     let mut row = vec![Cell::Text(stratum), Cell::Text(quantity), count.into()];
-    row.extend([share(within), share(from), share(to)]);
+    let alone = judged.iter().filter(|judged| judged.seen.error <= judged.half_width).count();
+    row.extend([share(within), share(alone), share(from), share(to)]);
     row.push(median(judged.iter().map(|judged| judged.half_width)).into());
     row.push(median(judged.iter().map(|judged| judged.seen.error)).into());
     for model in EVERY {
@@ -81,8 +83,8 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 fn description(held: &[HeldOut]) -> String {
     let mut text = format!(
         "Prediction intervals of 95 % on the {} solved random scenes of the validation base: one half of each group predicts the other one, \
-         both ways. `within`: share of the values that lie in their interval, where the reference's own uncertainty is added; it is expected \
-         between the two shares that follow in 95 of 100 such studies. Errors and half widths are relative to the value; of velocities to the impact \
+         both ways. `within`: share of the references' values that lie in their interval, the error of the reference added (`within_alone`: not added); \
+         it is expected between the two shares that follow in 95 of 100 such studies. Errors and half widths are relative to the value; of velocities to the impact \
          speed; of an efficiency below 5 % and an inner force below 5 % of the outer one to these. Bias and standard deviation are those of \
          models A, B and C, the reference's own error included.",
         solved().len()
@@ -202,7 +204,7 @@ pub fn figure(_: &Study) -> String {
             circle cx=(70.0 + 110.0 * k as f64) cy=(size[1] - 14.0) r="4" fill=(hex(*colour)) {}
             text x=(80.0 + 110.0 * k as f64) y=(size[1] - 10.0) { "model " (model) }
         }
-        text x="400" y=(size[1] - 10.0) { "lines of each model: mean, and 95 % of all scenes (dashed)" }
+        text x="400" y=(size[1] - 10.0) { "lines of each model: mean, and 95 % of all scenes (dashed); open circles: not more than the reference's own error" }
     };
     Svg::new("Models against references of the validation base", size, Theme::Standalone)
         .around(&drawing)
