@@ -113,8 +113,10 @@ impl Judge<'_> {
 
     /// The largest of the quantities [`COVERED`], and which that is; `None` if one is not determined.
     pub fn largest(&self, value: impl Fn(&str) -> Option<f64>) -> Option<(f64, &'static str)> {
-        let errors: Option<Vec<_>> =
-            COVERED.into_iter().map(|name| Some((self.error(name, &value)?, name))).collect();
+        // nothing is relative to what is negligible
+        let matters = |name: &&'static str| scale(name, self.continuum, self.speed).is_some();
+        let covered = COVERED.into_iter().filter(matters);
+        let errors: Option<Vec<_>> = covered.map(|name| Some((self.error(name, &value)?, name))).collect();
         errors?.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))
     }
 }

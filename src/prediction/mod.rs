@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 pub const LEVEL: f64 = 0.95;
 /// Fewest scenes that intervals come from.
 pub const FEWEST: usize = 30;
-/// Efficiency, and force over that of the other contact, below which a part of an impact is negligible: as the bands of references have it.
+/// Efficiency, and inner force over the outer one, below which a part of an impact is negligible.
 const MINOR: f64 = 0.05;
 /// End of the names of velocities.
 const VELOCITY: &str = "_velocity_final";
@@ -197,12 +197,15 @@ fn coordinates<'a>(
 }
 
 /// What the error of a quantity is relative to, by the values of a result and the `speed` of its impact in m/s: the quantity itself;
-/// of a velocity the speed, of a direction 1 rad, of a restitution 1; of an efficiency and a force that are negligible what is not.
+/// of a velocity the speed, of a direction 1 rad, of a restitution 1; of a negligible efficiency what is not negligible. `None` of a
+/// negligible inner force: nothing is predicted of it.
 pub fn scale(quantity: &str, value: impl Fn(&str) -> Option<f64>, speed: f64) -> Option<f64> {
     let own = value(quantity)?.abs();
     Some(match quantity {
         "efficiency" => own.max(MINOR),
-        "inner_force_peak" => own.max(MINOR * value("outer_force_peak")?),
+        "inner_force_peak" => {
+            Some(own).filter(|own| *own >= MINOR * value("outer_force_peak").unwrap_or(0.0))?
+        }
         _ if quantity.ends_with(VELOCITY) => Some(speed).filter(|speed| speed.is_finite())?,
         _ if quantity.ends_with(RESTITUTION) => 1.0,
         _ if quantity.starts_with(COMPONENT) => value("sphere_speed")?,

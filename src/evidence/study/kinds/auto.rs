@@ -3,13 +3,13 @@
 use crate::error::Result;
 use crate::evidence::study::{Cell, Claim, Note, Study};
 use crate::prediction::auto::{COVERED, Judge};
-use crate::prediction::error;
 use crate::prediction::held_out::{HeldOut, expected, held_out};
+use crate::prediction::{error, scale};
 use crate::scene::Model;
 use std::collections::BTreeMap;
 
 /// Tolerances of the study.
-pub const TOLERANCES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
+pub const TOLERANCES: [f64; 3] = [0.01, 0.03, 0.1];
 const COLUMNS: &str = "scene, group, tolerance, model, predicted_error, true_error, met, within";
 /// Largest standard deviation of the references' errors over the tolerance that they can decide about.
 const DECISIVE: f64 = 0.5;
@@ -46,7 +46,8 @@ fn row(held: &HeldOut, tolerance: f64) -> Vec<Cell> {
     let decisive = |name: &&str| {
         error(scene, model, name).map(|(_, seen)| seen).filter(|seen| seen.noise <= DECISIVE * tolerance)
     };
-    let seen = COVERED.iter().map(decisive);
+    // as auto has it: nothing is relative to what is negligible
+    let seen = COVERED.iter().filter(|name| scale(name, exact, scene.speed).is_some()).map(decisive);
     let off: Option<f64> =
         seen.map(|seen| Some(seen?.excess())).try_fold(0.0, |largest, error| Some(f64::max(largest, error?)));
     let within = off.filter(|_| met).map(|off| usize::from(off <= tolerance));
