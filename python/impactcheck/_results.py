@@ -22,8 +22,9 @@ class Result:
     """A run of a model or a reference: summary, whose entries are attributes too, and curves.
 
     Attributes:
-        summary: As `impactcheck reduced --json` prints it, SI: velocities in m/s, forces in N, times
-            in s, `first_frequency` in Hz, the efficiency as a share of 1.
+        summary: As `impactcheck reduced --json` prints it (of a sweep without `prediction`), SI:
+            velocities in m/s, forces in N, times in s, `first_frequency` in Hz, the efficiency as
+            a share of 1.
         curves: Arrays by the curve's name, shape (samples): `time` in s, displacements in m,
             velocities in m/s, forces in N.
     """
