@@ -220,17 +220,17 @@ mod tests {
     }
 
     /// Short and long flights; noise that is white, and that filters from a single pole to steep ones limit. A fit that takes all samples for
-    /// independent states intervals that hold the step in 37 and 7 % at 100 and 20 kHz. The shares scatter by 1.1 % (short
-    /// flights) and 1.8 %.
+    /// independent states intervals that hold the step in 37 and 7 % at 100 and 20 kHz. The shares scatter by 0.6 to 1.1 %
+    /// (short flights) and 1.1 to 1.5 %.
     #[test]
     fn intervals_of_95_percent_hold_the_step_in_95_percent_of_the_records() {
         for (length, filter, records) in [
             (40e-6, None, 400_u32),
             (40e-6, Some((8, 100e3)), 400),
-            (40e-6, Some((1, 20e3)), 400),
+            (40e-6, Some((1, 20e3)), 1200),
             (40e-6, Some((8, 20e3)), 400),
-            (300e-6, Some((1, 20e3)), 150),
-            (300e-6, Some((2, 100e3)), 150),
+            (300e-6, Some((1, 20e3)), 400),
+            (300e-6, Some((2, 100e3)), 200),
         ] {
             let within = (0..u64::from(records)).filter(|seed| {
                 let free = free_flight(length, filter, *seed);

@@ -24,13 +24,13 @@ pub struct SolvedScene {
     /// Numbers of model C's result, by name, positive.
     pub results: BTreeMap<String, f64>,
     /// By quantity, SI.
-    pub values: BTreeMap<String, Values>,
+    pub values: BTreeMap<String, SolvedValues>,
 }
 
-/// Values of a quantity, SI, as they stand in the table; `None`: not determined.
+/// SolvedValues of a quantity, SI, as they stand in the table; `None`: not determined.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(from = "[Option<f64>; 5]")]
-pub struct Values {
+pub struct SolvedValues {
     /// The reference's in the limit of fine meshes.
     pub reference: Option<f64>,
     /// Half width of its 95 % band.
@@ -39,7 +39,7 @@ pub struct Values {
     pub models: [Option<f64>; 3],
 }
 
-impl From<[Option<f64>; 5]> for Values {
+impl From<[Option<f64>; 5]> for SolvedValues {
     fn from([reference, band, a, b, c]: [Option<f64>; 5]) -> Self {
         Self { reference, band, models: [a, b, c] }
     }

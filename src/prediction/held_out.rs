@@ -11,7 +11,7 @@ const HALVES: usize = 40;
 
 /// A quantity of a solved scene, with the interval that the other half of its group gives it.
 #[derive(Debug, Clone)]
-pub struct Judged {
+pub struct JudgedValue {
     /// Half width of the interval of model C, relative as [`super::scale`] has it.
     pub half_width: f64,
     /// Signed error of model C.
@@ -20,7 +20,7 @@ pub struct Judged {
     pub seen: SeenError,
 }
 
-impl Judged {
+impl JudgedValue {
     /// Whether the interval holds the reference's value, the error of that added.
     pub fn is_within(&self) -> bool {
         self.seen.is_within(self.half_width)
@@ -33,7 +33,7 @@ pub struct HeldOut {
     /// The scene.
     pub scene: &'static SolvedScene,
     /// By name.
-    pub quantities: BTreeMap<&'static str, Judged>,
+    pub quantities: BTreeMap<&'static str, JudgedValue>,
 }
 
 /// The groups of the base with solved scenes.
@@ -66,7 +66,7 @@ fn of_stratum(stratum: &str) -> Vec<HeldOut> {
                 for held in &mut found {
                     let Some((signed, seen)) = error(held.scene, Model::C, quantity) else { continue };
                     let half_width = calibrated.half_width(&seen.place);
-                    held.quantities.insert(quantity, Judged { half_width, signed, seen });
+                    held.quantities.insert(quantity, JudgedValue { half_width, signed, seen });
                 }
             }
             found

@@ -8,7 +8,7 @@ use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::colours::{MODELS, hex};
 use crate::plot::polyline::path;
 use crate::plot::{Svg, Theme};
-use crate::prediction::held_out::{HeldOut, Judged, expected, held_out, quantities, strata};
+use crate::prediction::held_out::{HeldOut, JudgedValue, expected, held_out, quantities, strata};
 use crate::prediction::{SolvedScene, error, refused, solved};
 use crate::scene::Model;
 use maud::{Markup, html};
@@ -47,7 +47,7 @@ fn row(
     held: &[&HeldOut],
     scenes: &[&SolvedScene],
 ) -> Vec<Cell> {
-    let judged: Vec<&Judged> = held.iter().filter_map(|held| held.quantities.get(quantity)).collect();
+    let judged: Vec<&JudgedValue> = held.iter().filter_map(|held| held.quantities.get(quantity)).collect();
     let count = judged.len();
     let within = judged.iter().filter(|judged| judged.is_within()).count();
     let [from, to] = expected(count);
@@ -104,8 +104,8 @@ fn description(held: &[HeldOut]) -> String {
 }
 
 /// The scenes where model C is worst, each with its worst quantity, the worst first.
-fn worst(held: &[HeldOut]) -> Vec<(&str, &'static str, &Judged)> {
-    let mut found: Vec<(&str, &'static str, &Judged)> = held
+fn worst(held: &[HeldOut]) -> Vec<(&str, &'static str, &JudgedValue)> {
+    let mut found: Vec<(&str, &'static str, &JudgedValue)> = held
         .iter()
         .filter_map(|held| {
             let all = held.quantities.iter().map(|(name, judged)| (held.scene.scene.as_str(), *name, judged));
@@ -118,8 +118,8 @@ fn worst(held: &[HeldOut]) -> Vec<(&str, &'static str, &Judged)> {
 }
 
 fn claims(held: &[HeldOut]) -> Vec<Claim> {
-    let all: Vec<&Judged> = held.iter().flat_map(|held| held.quantities.values()).collect();
-    let share = |judged: &[&Judged]| {
+    let all: Vec<&JudgedValue> = held.iter().flat_map(|held| held.quantities.values()).collect();
+    let share = |judged: &[&JudgedValue]| {
         let outside = judged.iter().filter(|judged| !judged.is_within()).count();
         (!judged.is_empty()).then(|| outside as f64 / judged.len() as f64)
     };
@@ -140,7 +140,7 @@ fn claims(held: &[HeldOut]) -> Vec<Claim> {
 }
 
 /// A coordinate system of the figure.
-struct Parity {
+struct ParityPlot {
     quantity: &'static str,
     label: &'static str,
     /// Logarithmic; else over the impact's speed, or as it is.
@@ -149,33 +149,33 @@ struct Parity {
     over_speed: bool,
 }
 
-const PARITIES: [Parity; 6] = [
-    Parity { quantity: "efficiency", label: "efficiency", logarithmic: false, over_speed: false },
-    Parity {
+const PARITIES: [ParityPlot; 6] = [
+    ParityPlot { quantity: "efficiency", label: "efficiency", logarithmic: false, over_speed: false },
+    ParityPlot {
         quantity: "outer_force_peak",
         label: "outer force peak in N",
         logarithmic: true,
         over_speed: false,
     },
-    Parity {
+    ParityPlot {
         quantity: "inner_force_peak",
         label: "inner force peak in N",
         logarithmic: true,
         over_speed: false,
     },
-    Parity {
+    ParityPlot {
         quantity: "outer_velocity_final",
         label: "outer velocity over impact speed",
         logarithmic: false,
         over_speed: true,
     },
-    Parity {
+    ParityPlot {
         quantity: "outer_contact_end",
         label: "outer contact end in s",
         logarithmic: true,
         over_speed: false,
     },
-    Parity {
+    ParityPlot {
         quantity: "first_frequency",
         label: "first frequency in Hz",
         logarithmic: true,
@@ -217,7 +217,7 @@ fn plot(x: PlotAxis, y: PlotAxis) -> Plot {
 }
 
 /// Model over reference.
-fn parity(shown: &Parity) -> Markup {
+fn parity(shown: &ParityPlot) -> Markup {
     let of = |scene: &SolvedScene, value: Option<f64>| {
         let scale = if shown.over_speed { scene.speed } else { 1.0 };
         value.map(|value| value / scale).filter(|value| !shown.logarithmic || *value > 0.0)
