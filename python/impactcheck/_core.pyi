@@ -9,6 +9,7 @@ __all__ = [
     "figure",
     "main",
     "optimise",
+    "predicted",
     "project_root",
     "reduced",
     "reference",
