@@ -92,7 +92,7 @@ fn description(held: &[HeldOut]) -> String {
     text += "\n\nModel C has its largest errors, beyond that of the reference, in:\n";
     for (scene, quantity, judged) in worst(held) {
         let (error, noise) = (percent_above(judged.seen.error), percent_above(judged.seen.noise));
-        text += &format!("\n- {scene}: {quantity} {error} (reference ± {noise})");
+        text += &format!("\n- {scene}: {quantity} {error} (standard deviation of the reference {noise})");
     }
     if !refused().is_empty() {
         text += "\n\nNot solved:\n";
