@@ -82,7 +82,7 @@ pub(super) fn result_numbers(
         summary.value(peak).map_or(0.0, |force| law.contact_radius(force))
     });
     let [outer, inner] = bodies.map(|(_, shape, material)| shape.mass(material));
-    // a run that ends during the contact tells the least
+    // of a run that ends during the contact: its end
     let contact = summary.value("outer_contact_end").or(end_time)? * summary.value("first_frequency")?;
     let measures = [patches[0].max(patches[1]) / setup.plate.thickness, contact, inner / outer];
     let film = stokes_number(setup).map(|number| ("Stokes number of the film", number));

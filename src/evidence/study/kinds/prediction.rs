@@ -1,4 +1,4 @@
-//! How true and how wide the prediction intervals are, and what the models of the validation base are off by.
+//! How true and how wide the prediction intervals are, and the errors of the models in the validation base.
 
 use crate::error::Result;
 use crate::evidence::study::{Cell, Claim, Note, Study};
@@ -204,7 +204,7 @@ pub fn figure(_: &Study) -> String {
             circle cx=(70.0 + 110.0 * k as f64) cy=(size[1] - 14.0) r="4" fill=(hex(*colour)) {}
             text x=(80.0 + 110.0 * k as f64) y=(size[1] - 10.0) { "model " (model) }
         }
-        text x="400" y=(size[1] - 10.0) { "lines of each model: mean, and 95 % of all scenes (dashed); open circles: not more than the reference's own error" }
+        text x="400" y=(size[1] - 10.0) { "lines of each model: mean, and 95 % of all scenes (dashed); open circles: not more than the standard deviation of the reference" }
     };
     Svg::new("Models against references of the validation base", size, Theme::Standalone)
         .around(&drawing)
@@ -261,7 +261,7 @@ fn parity(shown: &ParityPlot) -> Markup {
     }
 }
 
-/// Errors of model C over the contact patch; open: not more than the reference may be off by.
+/// Errors of model C over the contact patch; open: not more than the standard deviation of the reference.
 fn over_patch(quantity: &str) -> Markup {
     let points: Vec<(f64, f64, bool)> = solved()
         .iter()
