@@ -184,7 +184,7 @@ const PARITIES: [ParityPlot; 6] = [
 ];
 const PANEL: f64 = 330.0;
 const MARGIN: (f64, f64, f64, f64) = (72.0, 34.0, 14.0, 54.0);
-const LEGEND: f64 = 34.0;
+const LEGEND: f64 = 54.0;
 const ACROSS: usize = 3;
 /// Ends of the axis of model C's errors.
 const ERRORS: [f64; 2] = [1e-6, 1.0];
@@ -204,7 +204,8 @@ pub fn figure(_: &Study) -> String {
             circle cx=(70.0 + 110.0 * k as f64) cy=(size[1] - 14.0) r="4" fill=(hex(*colour)) {}
             text x=(80.0 + 110.0 * k as f64) y=(size[1] - 10.0) { "model " (model) }
         }
-        text x="400" y=(size[1] - 10.0) { "lines of each model: mean, and 95 % of all scenes (dashed); open circles: not more than the standard deviation of the reference" }
+        text x="400" y=(size[1] - 30.0) { "lines of each model: mean, and 95 % of all scenes (dashed)" }
+        text x="400" y=(size[1] - 10.0) { "open circles: not more than the standard deviation of the reference" }
     };
     Svg::new("Models against references of the validation base", size, Theme::Standalone)
         .around(&drawing)
