@@ -59,8 +59,8 @@ python: setup wheel
 	$(VENV)/bin/ruff format --check $(SCRIPTS)
 	guide/check
 	$(TOOL) -m mypy
-	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference validation
 	cargo build --release
+	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference validation
 	guide/generate target/release/impactcheck --check
 	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck IMPACTCHECK_PYTHON=$(or $(IMPACTCHECK_PYTHON),$(CURDIR)/$(TOOL)) \
 	    $(WHEEL)/bin/python -m pytest -q python
