@@ -6,14 +6,13 @@ python validation/check.py SCENES validation/base.jsonl [--seed N] [--program PA
 from __future__ import annotations
 
 import argparse
-import json
 import random
 import sys
 from pathlib import Path
-from typing import Any
 
-from solve import MODELS, PROGRAM, solve
-from table import line
+from models import PROGRAM
+from solve import solve
+from table import MODELS, Row, read
 
 SHARE = 0.1
 """Of the scenes that are solved again."""
@@ -22,8 +21,6 @@ MOVED = 0.05
 
 NONE = (None,) * (2 + len(MODELS))
 """Values of a quantity that is not there."""
-
-Row = dict[str, Any]
 
 
 def moved(before: Row, after: Row) -> list[str]:
@@ -52,12 +49,12 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--program", type=Path, default=PROGRAM)
     given = parser.parse_args()
-    rows = [json.loads(text) for text in given.table.read_text().splitlines()]
+    rows = read(given.table)
     count = max(1, round(SHARE * len(rows)))
     sentences: list[str] = []
     for before in random.Random(given.seed).sample(rows, count):
         path = given.scenes / f"{before['scene']}.toml"
-        sentences += moved(before, line(solve(path, given.program)))
+        sentences += moved(before, solve(path, given.program))
     print("\n".join(sentences) or f"{count} of {len(rows)} scenes are as they were")
     return 1 if sentences else 0
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from solve import PROGRAM
+from models import PROGRAM
 
 QUANTILES = (0.5, 0.9, 0.95, 1.0)
 FINE = 0.5

@@ -11,32 +11,52 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from solve import MODELS, short
-
-SIDES = ("extrapolated", "bands")
-"""Of a row: what is known of the reference."""
+MODELS = ("A", "B", "C")
 LARGEST = 1_000_000
 """Bytes of the table, which comes with the program."""
+DIGITS = 7
+
+Row = dict[str, Any]
 
 
-def line(row: dict[str, Any]) -> dict[str, Any]:
-    """What the table keeps of a scene, which its number makes again."""
-    scene = row["file"]
-    kept = {name: value for name, value in row.items() if name not in ("file", *SIDES, "models")}
-    if "refused" not in row:
-        models = [row["models"].get(model, {}) for model in MODELS]
-        kept["values"] = {
-            name: [side.get(name) for side in (*(row[side] for side in SIDES), *models)]
-            for name in row["extrapolated"]
-        }
-        kept["speed"] = scene["actuator" if "actuator" in scene else "outer"]["speed"]
-        similarity = kept.pop("similarity") or {"numbers": {}, "results": {}}
-        for part in ("numbers", "results"):
-            kept[part] = {name: short(value) for name, value in similarity[part].items()}
-    return kept
+def short(value: float | None) -> float | None:
+    """With the digits that are kept."""
+    return None if value is None else float(f"{value:.{DIGITS}g}")
+
+
+def with_models(row: Row, results: Row) -> Row:
+    """A line of the table with these results of the models."""
+    similarity = results["C"].get("similarity") or {"numbers": {}, "results": {}}
+    values = {
+        name: known[:2] + [short(results.get(model, {}).get(name)) for model in MODELS]
+        for name, known in row["values"].items()
+    }
+    numbers = {
+        part: {name: short(value) for name, value in similarity[part].items()}
+        for part in ("numbers", "results")
+    }
+    failed = {model: of["refused"] for model, of in results.items() if "refused" in of}
+    kept = {name: value for name, value in row.items() if name != "failed"}
+    return kept | numbers | {"values": values} | ({"failed": failed} if failed else {})
+
+
+def read(table: Path) -> list[Row]:
+    """The lines; none of a table that is not there yet."""
+    lines = table.read_text(encoding="utf-8").splitlines() if table.exists() else []
+    return [json.loads(line) for line in lines]
+
+
+def write(table: Path, rows: Iterable[Row]) -> None:
+    """Write the lines. Raises `ValueError` of a table that is too large."""
+    ordered = sorted(rows, key=lambda row: str(row["scene"]))
+    text = "".join(json.dumps(row, separators=(",", ":")) + "\n" for row in ordered)
+    if len(text) > LARGEST:
+        raise ValueError(f"the table has {len(text)} bytes; it may have {LARGEST}")
+    table.write_text(text, encoding="utf-8")
 
 
 def main() -> None:
@@ -45,16 +65,11 @@ def main() -> None:
     parser.add_argument("rows", type=Path)
     parser.add_argument("table", type=Path)
     given = parser.parse_args()
-    before = given.table.read_text(encoding="utf-8").splitlines() if given.table.exists() else []
-    lines = {row["scene"]: row for row in map(json.loads, before)}
+    rows = {row["scene"]: row for row in read(given.table)}
     for path in given.rows.glob("*.json"):
-        lines[path.stem] = line(json.loads(path.read_text()))
-    rows = [lines[name] for name in sorted(lines)]
-    text = "".join(json.dumps(row, separators=(",", ":")) + "\n" for row in rows)
-    if len(text) > LARGEST:
-        parser.error(f"the table has {len(text)} bytes; it may have {LARGEST}")
-    given.table.write_text(text, encoding="utf-8")
-    unsolved = sum("refused" in row for row in rows)
+        rows[path.stem] = json.loads(path.read_text(encoding="utf-8"))
+    write(given.table, rows.values())
+    unsolved = sum("refused" in row for row in rows.values())
     print(f"{len(rows)} scenes, {unsolved} of them refused or not solved: {given.table}")
 
 

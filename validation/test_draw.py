@@ -18,8 +18,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import bodies
 from check import moved
 from draw import DRAWN, ELEMENTS, STEEPEST, scenes, write
+from models import PROGRAM
 from points import points
-from solve import PROGRAM
 
 
 def volume(path: Path) -> float:

@@ -24,11 +24,12 @@ pub(super) fn stratum(setup: &GeneralImpact) -> Result<&'static str, String> {
         .materials()
         .iter()
         .all(|material| material.relaxation.is_empty() && material.yield_strength.is_none());
-    let single = setup.series.is_none() && setup.outer.is_centred() && body.damping_ratio == 0.0;
+    let uniform = body.materials.all().len() == 1;
+    let single = uniform && setup.series.is_none() && setup.outer.is_centred() && body.damping_ratio == 0.0;
     match spheres && elastic && single {
         true => Ok("body"),
         false => {
-            Err("the validation base has single impacts of elastic spheres on undamped bodies only".into())
+            Err("the validation base has single impacts of elastic spheres on undamped bodies of one material only".into())
         }
     }
 }
@@ -37,13 +38,23 @@ pub(super) fn stratum(setup: &GeneralImpact) -> Result<&'static str, String> {
 pub(super) fn numbers(setup: &GeneralImpact) -> Vec<(&'static str, f64)> {
     let (outer, face) = (&setup.outer, setup.face());
     let mass = outer.shape.mass(&outer.material);
+    let inner = setup.inner.as_ref();
     vec![
         (
             "modulus of the outer body over the struck body's",
             outer.material.youngs_modulus / face.youngs_modulus,
         ),
+        (
+            "modulus of the inner body over the struck body's",
+            inner.map_or(&outer.material, |inner| &inner.material).youngs_modulus / face.youngs_modulus,
+        ),
         ("Poisson's ratio of the struck body", face.poisson_ratio),
         ("mass of the inner body over the outer one's", setup.inner_mass().unwrap_or(0.0) / mass),
+        ("speed of the inner body over the outer one's", inner.map_or(0.0, |inner| inner.speed) / outer.speed),
+        (
+            "gap of the inner body over the outer one's tip radius",
+            inner.map_or(0.0, |inner| inner.gap) / outer.shape.tip_radius(),
+        ),
         ("whether the struck body is held", f64::from(u8::from(setup.is_held() == Some(true)))),
     ]
 }

@@ -4,8 +4,9 @@ use super::place::stokes_number;
 use crate::contact::Hertz;
 use crate::kinds::MEASURES;
 use crate::kinds::plate_impact::PlateImpact;
+use crate::material::{Material, modulus_ratio};
 use crate::result::Summary;
-use crate::scene::{Edge, Shape};
+use crate::scene::{Edge, Fluid, Shape};
 
 /// The group of `setup`, as `validation/draw.py` names it.
 ///
@@ -24,8 +25,14 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
     if setup.outer.angle != 0.0 {
         return Err("the validation base has no oblique impacts".into());
     }
-    if setup.fluid.as_ref().is_some_and(|fluid| !fluid.squeeze_film || fluid.drag_coefficient > 0.0) {
-        return Err("the validation base has fluids with a squeeze film and without drag only".into());
+    let is_drawn = |fluid: &Fluid| {
+        fluid.squeeze_film && fluid.drag_coefficient == 0.0 && fluid.shear_thinning.is_none()
+    };
+    if setup.fluid.as_ref().is_some_and(|fluid| !is_drawn(fluid)) {
+        return Err("the validation base has Newtonian fluids with a squeeze film and without drag only".into());
+    }
+    if setup.materials().iter().any(|material| material.rate.is_some()) {
+        return Err("the validation base has no yield strength that grows with the strain rate".into());
     }
     let features = [
         (setup.fluid.is_some(), "film"),
@@ -47,10 +54,15 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
 /// Numbers of `setup` that were drawn for the base.
 pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
     let (plate, outer, inner) = (&setup.plate, &setup.outer, &setup.inner);
+    let fluid = setup.fluid.as_ref();
+    let hardening = setup.materials().into_iter().filter_map(|of| Some(of.hardening? / of.youngs_modulus));
     vec![
         ("thickness over radius of the plate", plate.thickness / plate.radius),
         ("Poisson's ratio of the plate", plate.material.poisson_ratio),
-        ("damping ratio of the plate", plate.damping_ratio),
+        (
+            "damping ratio of the plate",
+            fluid.map_or(plate.damping_ratio, |fluid| fluid.plate_damping_ratio),
+        ),
         (
             "modulus of the outer body over the plate's",
             outer.material.youngs_modulus / plate.material.youngs_modulus,
@@ -63,11 +75,20 @@ pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
         ("gap of the inner body over the plate's thickness", inner.gap / plate.thickness),
         ("coefficient of friction", setup.friction),
         ("offset over radius of the plate", outer.offset / plate.radius),
+        ("hardening over modulus", hardening.fold(0.0, f64::max)),
+        (
+            "minimum gap of the film over the tip radius",
+            fluid.map_or(0.0, |fluid| fluid.minimum_gap / inner.shape.tip_radius()),
+        ),
+        (
+            "first frequency of the wet plate over the dry one's",
+            fluid.map_or(1.0, |fluid| fluid.added_mass_frequency_ratio),
+        ),
     ]
 }
 
-/// Numbers of its result `summary`, wherever the plate is struck and whatever its materials do: the contact radius is that of Hertz at the
-/// force peak.
+/// Numbers of its result `summary`, wherever the plate is struck and whatever its materials do: patch and pressure are those of Hertz at
+/// the force peak.
 pub(super) fn result_numbers(
     setup: &PlateImpact,
     end_time: Option<f64>,
@@ -77,15 +98,33 @@ pub(super) fn result_numbers(
         ("outer_force_peak", &setup.outer.shape, &setup.outer.material),
         ("inner_force_peak", &setup.inner.shape, &setup.inner.material),
     ];
-    let patches = bodies.map(|(peak, shape, material)| {
+    let (mut patch, mut overload) = (0.0_f64, 0.0_f64);
+    for (peak, shape, material) in bodies {
+        let force = summary.value(peak).unwrap_or(0.0);
         let law = Hertz::new(shape.tip_radius(), material, &setup.plate.material);
-        summary.value(peak).map_or(0.0, |force| law.contact_radius(force))
-    });
+        let strength = [material, &setup.plate.material].into_iter().filter_map(Material::plasticity);
+        let weakest = strength.map(|of| of.yield_strength).fold(f64::INFINITY, f64::min);
+        patch = patch.max(law.contact_radius(force));
+        overload = overload.max(law.maximum_pressure(force) / weakest);
+    }
     let [outer, inner] = bodies.map(|(_, shape, material)| shape.mass(material));
     // of a run that ends during the contact: its end
-    let contact = summary.value("outer_contact_end").or(end_time)? * summary.value("first_frequency")?;
-    let measures = [patches[0].max(patches[1]) / setup.plate.thickness, contact, inner / outer];
-    let film = stokes_number(setup).map(|number| ("Stokes number of the film", number));
-    let numbers: Vec<(&str, f64)> = MEASURES.into_iter().zip(measures).chain(film).collect();
+    let end = summary.value("outer_contact_end").or(end_time)?;
+    let contact = end * summary.value("first_frequency")?;
+    let measures = [patch / setup.plate.thickness, contact, inner / outer];
+    let loss_factor = |material: &&Material| {
+        let [storage, loss] = modulus_ratio(&material.relaxation, 0.5 / end);
+        loss / storage
+    };
+    let special = [
+        setup.yields().then_some(("pressure over yield strength", overload)),
+        setup.relaxes().then(|| {
+            let largest = setup.materials().iter().map(loss_factor).fold(0.0, f64::max);
+            ("loss factor at the frequency of the contact", largest)
+        }),
+        stokes_number(setup).map(|number| ("Stokes number of the film", number)),
+    ];
+    let numbers: Vec<(&str, f64)> =
+        MEASURES.into_iter().zip(measures).chain(special.into_iter().flatten()).collect();
     numbers.iter().all(|(_, value)| value.is_finite() && *value > 0.0).then_some(numbers)
 }
