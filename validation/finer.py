@@ -19,27 +19,28 @@ from typing import Any
 
 import numpy as np
 from models import PROGRAM
+from solve import limits
+from table import read
 
 QUANTILES = (0.5, 0.9, 0.95, 1.0)
 FINE = 0.5
 """Largest band of the finer meshes over that of the table: others do not decide."""
 
 
-def solve(path: Path, program: Path) -> dict[str, Any]:
+def finer(path: Path, program: Path) -> dict[str, list[float]]:
     """Values and bands of the finer meshes by quantity."""
     with tempfile.TemporaryDirectory() as folder:
         options = ("--resolution", "paper", "--json")
         command: list[str | Path] = [program, "--store", folder, "reference", path, *options]
         ran = subprocess.run(command, capture_output=True, text=True, check=True)
-    found = json.loads(ran.stdout)["convergence"]["quantities"]
-    return {name: [of["extrapolated"], of["band"]] for name, of in found.items()}
+    return limits(json.loads(ran.stdout)["convergence"])
 
 
-def ratios(before: dict[str, Any], finer: dict[str, Any]) -> list[float]:
+def ratios(before: dict[str, Any], after: dict[str, Any]) -> list[float]:
     """Differences over the bands of the table, of the quantities that the finer meshes decide."""
     found = []
     for name, (value, band, *_) in before["values"].items():
-        exact, rest = finer.get(name, (None, None))
+        exact, rest = after.get(name, (None, None))
         if value is None or not band or exact is None or rest is None:
             continue
         if rest <= FINE * band:
@@ -57,18 +58,18 @@ def main() -> None:
     parser.add_argument("--program", type=Path, default=PROGRAM)
     given = parser.parse_args()
     given.rows.mkdir(parents=True, exist_ok=True)
-    known = [json.loads(line) for line in given.table.read_text().splitlines()]
-    known = sorted((row for row in known if "values" in row), key=lambda row: float(row["seconds"]))
+    solved = (row for row in read(given.table) if "values" in row)
+    known = sorted(solved, key=lambda row: float(row["seconds"]))
     found: list[float] = []
     for before in known[: given.count]:
         target = given.rows / f"{before['scene']}.json"
         if not target.exists():
             try:
-                finer = solve(given.scenes / f"{before['scene']}.toml", given.program)
+                result = finer(given.scenes / f"{before['scene']}.toml", given.program)
             except subprocess.CalledProcessError as error:
                 print(f"{before['scene']}: {error.stderr}", file=sys.stderr)
                 continue
-            target.write_text(json.dumps(finer), encoding="utf-8")
+            target.write_text(json.dumps(result), encoding="utf-8")
         found += ratios(before, json.loads(target.read_text(encoding="utf-8")))
     if not found:
         parser.error("no finer mesh decides a value")

@@ -97,22 +97,23 @@ def least_squares(values: Floats, sizes: Floats) -> Estimate:
     return Estimate(float(limit), float(deviation), float(band))
 
 
-def bands(values: Floats, sizes: Floats) -> tuple[Floats, Floats, Floats]:
+def bands(values: Floats, sizes: Floats, order: float = ORDER) -> tuple[Floats, Floats, Floats]:
     """Limits, scatters and half widths of the 95 % bands about the values on the finest mesh.
 
-    phi_0 + alpha h^`ORDER` is fitted by least squares, weighted for a scatter that grows like
+    phi_0 + alpha h^`order` is fitted by least squares, weighted for a scatter that grows like
     h^`SCATTER_ORDER`; the band is the distance to phi_0 and `STANDARD_ERRORS` of phi_0.
 
     Args:
         values: (n, ...) finest mesh first, n >= 4: of a quantity, or of curves on common instants.
         sizes: (n,) element sizes, in any unit.
+        order: of convergence.
     """
     count = sizes.size
     if count < 4:
         raise ValueError(f"{count} meshes; least squares need at least 4")
     h = sizes[:, None] / sizes[0]
     weights = h**-SCATTER_ORDER
-    matrix = weights * np.hstack([np.ones_like(h), h**ORDER])
+    matrix = weights * np.hstack([np.ones_like(h), h**order])
     # Of the differences to the finest mesh: equal values have no band, not even round-off.
     differences = weights * (values - values[0]).reshape(count, -1)
     fitted = np.linalg.lstsq(matrix, differences, rcond=None)[0]
