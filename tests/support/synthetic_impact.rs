@@ -8,7 +8,7 @@ use impactcheck::kinds::plate_impact::{CURVES, PlateQuantities};
 use impactcheck::result::{History, Outcome, SCHEMA_VERSION, Source, Summary};
 use impactcheck::scene::{
     Edge, Geometry, Inner, Material, Model, Outer, Plate, ReducedSettings, ReferenceSettings, RunSettings,
-    Scene, Shape, Tolerance,
+    Scene, Shape, Tolerance, Turning,
 };
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -87,7 +87,7 @@ pub fn scene() -> Scene {
                 damping_ratio: 0.0,
             },
             outer: Outer::centred(sphere.clone(), steel.clone(), SPEED),
-            inner: Inner { shape: sphere, material: steel, gap: 0.0, speed: 0.0 },
+            inner: Inner { shape: sphere, material: steel, gap: 0.0, speed: 0.0, turning: Turning::default() },
             fluid: None,
             series: None,
         }

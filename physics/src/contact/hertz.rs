@@ -1,5 +1,6 @@
 //! Hertz's law for a spherical tip on a flat face.
 
+use super::radial_slip::{dundurs_beta, stiffening};
 use crate::scene::Material;
 
 /// F = k delta^(3/2) while the approach delta is positive, else 0.
@@ -24,6 +25,13 @@ impl Hertz {
     pub fn new(tip_radius: f64, tip: &Material, face: &Material) -> Self {
         let compliance = 1.0 / tip.plane_strain_modulus() + 1.0 / face.plane_strain_modulus();
         Self { stiffness: 4.0 / 3.0 * tip_radius.sqrt() / compliance, tip_radius }
+    }
+
+    /// The same with the coefficient of `friction`, by which a contact of the unlike materials `tip` and `face` is stiffer.
+    #[must_use]
+    pub fn with_friction(self, tip: &Material, face: &Material, friction: f64) -> Self {
+        let stiffening = stiffening(dundurs_beta(tip, face), friction);
+        Self { stiffness: self.stiffness * stiffening, ..self }
     }
 
     /// Force in N at the approach `delta` in m.

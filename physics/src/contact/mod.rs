@@ -5,7 +5,9 @@ mod elastic_plastic;
 mod ellipse;
 mod hertz;
 mod patch_flexibility;
+mod radial_slip;
 mod residual;
+mod tangential;
 mod viscoelastic;
 
 pub use dented::DentedContact;
@@ -13,4 +15,5 @@ pub use ellipse::{EffectiveSphere, effective_sphere};
 pub use hertz::Hertz;
 pub use patch_flexibility::{PatchFlexibility, PatchTable, RADII, TABULATED, Tabulated, WHOLE};
 pub use residual::{Residual, State};
+pub use tangential::TangentialContact;
 pub use viscoelastic::ViscoelasticContact;

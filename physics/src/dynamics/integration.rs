@@ -19,6 +19,8 @@ pub struct Options {
     pub end_time: Option<f64>,
     /// Largest distance of samples in s; `None` = no history is kept.
     pub sample_interval: Option<f64>,
+    /// Whether the history of a dry, elastic impact is that of the contact forces alone, which costs little.
+    pub forces_alone: bool,
     /// Most samples of a history between the ends of steps and flights: a long flight has wider intervals.
     pub samples_between: usize,
     /// Relative error of the force peaks from looking for them within the steps; 0 = as exact as rounding permits.
@@ -55,6 +57,7 @@ impl Default for Options {
             tolerance: 1e-7,
             end_time: None,
             sample_interval: None,
+            forces_alone: false,
             samples_between: SAMPLES_BETWEEN,
             peak_error: 0.0,
             results: None,

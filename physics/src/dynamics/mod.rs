@@ -21,6 +21,7 @@ pub mod memory;
 mod moving_body;
 mod point_laws;
 pub(crate) mod recorder;
+pub mod sliding;
 mod step_bounds;
 mod step_table;
 mod step_tables;

@@ -30,6 +30,8 @@ pub struct MovingBody {
     pub tip_radius: f64,
     /// Material at the contact point.
     pub material: Material,
+    /// Coulomb's coefficient there.
+    pub friction: f64,
     /// Speed towards the plate in m/s at t = 0; of a stack that of its tip after a step of the voltage.
     pub speed: f64,
     /// Mass in kg that has the body's kinetic energy at the speed of its contact point.
@@ -94,6 +96,7 @@ impl MovingBody {
             supply: None,
             tip_radius: bender.tip_radius,
             material: outer.material.clone(),
+            friction: outer.turning.friction,
             speed: outer.speed,
         })
     }
@@ -112,6 +115,7 @@ impl MovingBody {
             velocity: Vec::new(),
             tip_radius: stack.tip_radius,
             material: material.clone(),
+            friction: 0.0,
             speed: stack.step_speed(),
             mass: stack.mass(),
             drive: None,
@@ -193,12 +197,14 @@ impl MovingBody {
 
     fn rigid_outer(outer: &Outer) -> Self {
         let stack = if let Shape::Stack(stack) = outer.shape { Some(stack) } else { None };
-        Self { stack, ..Self::rigid(&outer.shape, &outer.material, [outer.speed, -outer.speed], 0.0) }
+        let friction = outer.turning.friction;
+        Self { stack, friction, ..Self::rigid(&outer.shape, &outer.material, [outer.speed, -outer.speed], 0.0) }
     }
 
     /// The inner body, which is rigid.
     pub fn inner(inner: &Inner) -> Self {
-        Self::rigid(&inner.shape, &inner.material, [inner.speed; 2], inner.gap)
+        let friction = inner.turning.friction;
+        Self { friction, ..Self::rigid(&inner.shape, &inner.material, [inner.speed; 2], inner.gap) }
     }
 
     /// A rigid body that begins with the `velocity` in m/s towards the plate and along z, `clearance` m from it.
@@ -211,6 +217,7 @@ impl MovingBody {
             velocity: vec![velocity[1] * mass.sqrt()],
             tip_radius: shape.tip_radius(),
             material: material.clone(),
+            friction: 0.0,
             speed: velocity[0],
             mass,
             drive: None,

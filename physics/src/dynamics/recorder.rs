@@ -20,6 +20,9 @@ pub static CURVES: [Curve; 8] = [
     Curve::new("inner_force", "N"),
 ];
 
+/// Those of the contact forces alone.
+static FORCES: [Curve; 2] = [Curve::new("outer_force", "N"), Curve::new("inner_force", "N")];
+
 /// The values of [`CURVES`] with the coordinates and rates `motion` under the contact `forces` in N; `local` is what the contacts add
 /// to displacement and velocity of the plate's centre, in m and m/s.
 pub(super) fn sample(system: &System, motion: [&[f64]; 2], local: [f64; 2], forces: [f64; 2]) -> [f64; 8] {
@@ -45,6 +48,8 @@ pub struct Recorder<'a, const P: usize = POINTS> {
     system: &'a System,
     collocation: &'a Collocation<P>,
     interval: f64,
+    /// See [`Options::forces_alone`].
+    forces_alone: bool,
     /// Samples that may still lie within steps and flights.
     room: usize,
     history: History,
@@ -55,9 +60,15 @@ impl<'a, const P: usize> Recorder<'a, P> {
     pub fn new(system: &'a System, collocation: &'a Collocation<P>, options: &Options) -> Option<Self> {
         let interval = options.sample_interval?;
         let room = options.samples_between;
-        let mut recorder = Self { system, collocation, interval, room, history: History::new(&CURVES) };
-        let (q, v) = system.initial_state();
-        recorder.push(0.0, &q, &v);
+        let forces_alone = options.forces_alone;
+        let history = History::new(if forces_alone { &FORCES } else { &CURVES });
+        let mut recorder = Self { system, collocation, interval, forces_alone, room, history };
+        if forces_alone {
+            recorder.history.push(0.0, [0.0; 2]);
+        } else {
+            let (q, v) = system.initial_state();
+            recorder.push(0.0, &q, &v);
+        }
         Some(recorder)
     }
 
@@ -66,6 +77,10 @@ impl<'a, const P: usize> Recorder<'a, P> {
     /// # Errors
     /// As the contact's system of equations.
     pub fn step(&mut self, time: f64, h: f64, q: &[f64], v: &[f64], forces: &[Stages; 2]) -> Result<()> {
+        if self.forces_alone {
+            self.step_of_forces(time, h, forces);
+            return Ok(());
+        }
         let [b0, b1] = &self.system.approach;
         self.step_under(time, h, q, v, forces[0], |k| {
             std::array::from_fn(|l| -(b0[k] * forces[0][l] + b1[k] * forces[1][l]))
@@ -85,8 +100,7 @@ impl<'a, const P: usize> Recorder<'a, P> {
         outer: Stages,
         forces: impl Fn(usize) -> Stages,
     ) -> Result<()> {
-        let count = (h / self.interval).ceil().clamp(1.0, 1.0 + (self.room / 2) as f64) as usize;
-        self.room -= count - 1;
+        let count = self.samples(h);
         let (mut q_at, mut v_at) = (vec![0.0; q.len()], vec![0.0; q.len()]);
         for sample in 1..=count {
             let t = h * sample as f64 / count as f64;
@@ -109,6 +123,25 @@ impl<'a, const P: usize> Recorder<'a, P> {
             self.push(time + t, &q_at, &v_at);
         }
         Ok(())
+    }
+
+    /// Number of samples of a step of `h` s, of which the last is its end.
+    fn samples(&mut self, h: f64) -> usize {
+        let count = (h / self.interval).ceil().clamp(1.0, 1.0 + (self.room / 2) as f64) as usize;
+        self.room -= count - 1;
+        count
+    }
+
+    fn step_of_forces(&mut self, time: f64, h: f64, forces: &[Stages; 2]) {
+        let is_open = forces.iter().flatten().all(|force| *force == 0.0);
+        let count = if is_open { 1 } else { self.samples(h) };
+        for sample in 1..=count {
+            let share = sample as f64 / count as f64;
+            let weights = self.collocation.interpolation(share);
+            if self.history.time.last().is_none_or(|last| *last < time + share * h) {
+                self.history.push(time + share * h, [0, 1].map(|i| dot(&weights, &forces[i]).max(0.0)));
+            }
+        }
     }
 
     /// The history so far.

@@ -144,7 +144,10 @@ impl System {
             coordinates.extend((1..body.oscillators.len()).map(|k| Coordinate::of_body(bodies, i, k)));
         }
         let each = |value: fn(&Coordinate) -> f64| coordinates.iter().map(value).collect::<Vec<f64>>();
-        let laws = [0, 1].map(|i| Hertz::new(bodies[i].tip_radius, &bodies[i].material, faces[i]));
+        let laws = [0, 1].map(|i| {
+            let MovingBody { tip_radius, material, friction, .. } = &bodies[i];
+            Hertz::new(*tip_radius, material, faces[i]).with_friction(material, faces[i], *friction)
+        });
         let mut flexibility = plate.residual.unwrap_or(PatchFlexibility::constant([[0.0; 2]; 2]));
         let hit = HertzImpact { mass: masses[0], speed: outer.speed, stiffness: laws[0].stiffness };
         let local_centre = LocalCentre::new(flexibility, &laws, faces[0].plane_strain_modulus(), &hit);

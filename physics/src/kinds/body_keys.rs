@@ -88,13 +88,32 @@ const fn magnet(key: &'static str, dimension: Dimension, doc: &'static str) -> F
     only(&["magnet"], required(key, positive(dimension), doc))
 }
 
+const FRICTION: Field = optional(
+    "friction",
+    pure(Bound::NOT_NEGATIVE),
+    "Coulomb's coefficient of friction of this body's contact; absent = that above the first table",
+);
+const SPIN: Field = optional(
+    "spin",
+    Kind::Quantity(Dimension::SPIN, Bound::ANY),
+    "Spin about y at t = 0, positive as of a ball that rolls towards +x on a floor; absent = 0",
+);
+const MOMENT_OF_INERTIA: Field = only(
+    &["compact"],
+    optional(
+        "moment_of_inertia",
+        positive(Dimension::MOMENT_OF_INERTIA),
+        "Moment of inertia about the centre of the tip, which is the centre of mass; needed where it turns",
+    ),
+);
+
 /// Angles in rad at which a body can fly towards a plane.
 const TOWARDS: Bound = Bound {
     low: Some((-std::f64::consts::FRAC_PI_2, false)),
     high: Some((std::f64::consts::FRAC_PI_2, false)),
 };
 
-pub(super) static OUTER: [Field; 37] = [
+pub(super) static OUTER: [Field; 40] = [
     required(
         "kind",
         Kind::Choice(&[
@@ -245,9 +264,12 @@ pub(super) static OUTER: [Field; 37] = [
             "Angle of the velocity against the normal of what it strikes, positive = towards +x; absent = 0",
         ),
     ),
+    only(&["sphere", "compact"], FRICTION),
+    only(&["sphere", "compact"], SPIN),
+    MOMENT_OF_INERTIA,
 ];
 
-pub(super) static INNER: [Field; 7] = [
+pub(super) static INNER: [Field; 10] = [
     required("kind", Kind::Choice(&[choice("sphere"), choice("compact")]), SHAPE_KIND),
     SPHERE_RADIUS,
     COMPACT_MASS,
@@ -263,6 +285,9 @@ pub(super) static INNER: [Field; 7] = [
         Kind::Quantity(Dimension::SPEED, Bound::ANY),
         "Speed towards the plate, or towards the outer body without one, at its first contact; negative = away from it, absent = 0",
     ),
+    FRICTION,
+    SPIN,
+    MOMENT_OF_INERTIA,
 ];
 
 /// Most impacts of a series.

@@ -7,7 +7,7 @@ use crate::actuator::{Bender, Stack, Supply, beam, cantilever};
 use crate::scene::material::material;
 use crate::scene::read::refused;
 use crate::scene::values::{Checked, Node, unknown};
-use crate::scene::{Inner, Outer, Series, Shape, Spot};
+use crate::scene::{Inner, Outer, Series, Shape, Spot, Turning};
 
 /// How often the impact is repeated, if `root` says so.
 pub(super) fn series(root: &Node) -> Result<Option<Series>> {
@@ -29,18 +29,34 @@ fn shape(body: &Node) -> Result<Shape> {
     }
 }
 
-/// The inner body.
-pub(super) fn inner(inner: &Node, materials: &Node) -> Result<Inner> {
+fn turning(body: &Node, friction: f64) -> Result<Turning> {
+    let own_friction = body.optional_number("friction")?;
+    Ok(Turning {
+        friction: own_friction.unwrap_or(friction),
+        own_friction,
+        spin: body.number_or("spin", 0.0)?,
+        moment_of_inertia: body.optional_number("moment_of_inertia")?,
+    })
+}
+
+/// The inner body, where the scene has the coefficient of `friction`.
+pub(super) fn inner(inner: &Node, materials: &Node, friction: f64) -> Result<Inner> {
     Ok(Inner {
         shape: shape(inner)?,
         material: material(materials, inner.text("material")?)?,
         gap: inner.number_or("gap", 0.0)?,
         speed: inner.number_or("speed", 0.0)?,
+        turning: turning(inner, friction)?,
     })
 }
 
-/// The outer body; the speed of a bender's or a stack's tip follows from its drive.
-pub(super) fn outer(outer: &Node, materials: &Node) -> Result<Outer> {
+/// The outer body, where the scene has the coefficient of `friction`.
+pub(super) fn outer(outer: &Node, materials: &Node, friction: f64) -> Result<Outer> {
+    Ok(Outer { turning: turning(outer, friction)?, ..striking(outer, materials)? })
+}
+
+/// The outer body without spin and friction; the speed of a bender's or a stack's tip follows from its drive.
+fn striking(outer: &Node, materials: &Node) -> Result<Outer> {
     let material = material(materials, outer.text("material")?)?;
     if outer.text("kind")? == "stack" {
         let stack = stack(outer)?;
@@ -58,6 +74,7 @@ pub(super) fn outer(outer: &Node, materials: &Node) -> Result<Outer> {
             speed: outer.number("speed")?,
             offset: outer.number_or("offset", 0.0)?,
             angle: outer.number_or("angle", 0.0)?,
+            turning: Turning::default(),
         });
     }
     let mut bender = bender(outer)?;

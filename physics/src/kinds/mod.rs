@@ -8,6 +8,7 @@ pub mod general_impact;
 mod impacts;
 pub mod plate_impact;
 mod reading;
+mod rubbing;
 pub mod seal_seat;
 mod series;
 

@@ -49,23 +49,26 @@ pub struct StackSummary {
 pub struct Sideways {
     /// Velocity of the outer body along x in m/s.
     pub outer_tangential_velocity_final: f64,
-    /// Velocity of the inner body along x in m/s.
-    pub inner_tangential_velocity_final: f64,
+    /// Velocity of the inner body along x in m/s; `None` without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inner_tangential_velocity_final: Option<f64>,
     /// Spin of the outer body about y in rad/s; positive as of a ball that rolls towards +x on a plate below it.
     pub outer_spin_final: f64,
     /// Spin of the inner body about y in rad/s.
-    pub inner_spin_final: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inner_spin_final: Option<f64>,
 }
 
 impl Sideways {
     /// Name, value and unit of each.
-    pub fn rows(&self) -> [(&'static str, f64, &'static str); 4] {
-        [
-            ("outer_tangential_velocity_final", self.outer_tangential_velocity_final, "m/s"),
+    pub fn rows(&self) -> impl Iterator<Item = (&'static str, f64, &'static str)> + use<> {
+        let all = [
+            ("outer_tangential_velocity_final", Some(self.outer_tangential_velocity_final), "m/s"),
             ("inner_tangential_velocity_final", self.inner_tangential_velocity_final, "m/s"),
-            ("outer_spin_final", self.outer_spin_final, "rad/s"),
+            ("outer_spin_final", Some(self.outer_spin_final), "rad/s"),
             ("inner_spin_final", self.inner_spin_final, "rad/s"),
-        ]
+        ];
+        all.into_iter().filter_map(|(name, value, unit)| Some((name, value?, unit)))
     }
 }
 
@@ -131,9 +134,12 @@ pub struct Summary {
     /// contacts only, which amplify it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integration_error: Option<f64>,
-    /// References of impacts beside the centre or at an angle, unless the run was cut during a contact.
+    /// Impacts beside the centre (references), at an angle or with spin, unless the run was cut during a contact.
     #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
     pub sideways: Option<Sideways>,
+    /// Reduced models whose bodies rub: energy that friction dissipates, J.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_work: Option<f64>,
     /// Of a bender only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bender: Option<BenderSummary>,
@@ -260,6 +266,7 @@ impl Summary {
             solve_seconds: 0.0,
             failure: None,
             sideways: None,
+            friction_work: None,
             bender: None,
             stack: None,
             contact_pressure: None,

@@ -87,6 +87,30 @@ impl Shape {
     }
 }
 
+/// How a body turns, and rubs on what it touches.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Turning {
+    /// Coulomb's coefficient of its contact.
+    #[serde(skip)]
+    pub friction: f64,
+    /// The same if the body states its own; `None`: it is that of the scene.
+    #[serde(rename = "friction", skip_serializing_if = "Option::is_none")]
+    pub own_friction: Option<f64>,
+    /// Spin about y at t = 0 in rad/s; positive as of a ball that rolls towards +x on a floor.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub spin: f64,
+    /// Moment of inertia about its centre in kg m^2, of a compact body; `None`: not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moment_of_inertia: Option<f64>,
+}
+
+impl Turning {
+    /// Whether the moment of inertia of a body of this `shape` is known.
+    pub fn has_inertia(&self, shape: &Shape) -> bool {
+        matches!(shape, Shape::Sphere { .. }) || self.moment_of_inertia.is_some()
+    }
+}
+
 /// The outer body: strikes the plate from above.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Outer {
@@ -103,12 +127,15 @@ pub struct Outer {
     /// Angle of the velocity against the plate's normal in rad, in the x-z plane; positive = towards +x.
     #[serde(skip_serializing_if = "is_zero")]
     pub angle: f64,
+    /// Spin and friction.
+    #[serde(flatten)]
+    pub turning: Turning,
 }
 
 impl Outer {
     /// A body that strikes the centre of the plate along its axis with `speed` in m/s.
     pub fn centred(shape: Shape, material: Material, speed: f64) -> Self {
-        Self { shape, material, speed, offset: 0.0, angle: 0.0 }
+        Self { shape, material, speed, offset: 0.0, angle: 0.0, turning: Turning::default() }
     }
 
     /// Speed towards the plate in m/s.
@@ -135,6 +162,9 @@ pub struct Inner {
     /// Speed towards the plate in m/s at t = 0, when the outer body touches; negative = away from it.
     #[serde(skip_serializing_if = "is_zero")]
     pub speed: f64,
+    /// Spin and friction.
+    #[serde(flatten)]
+    pub turning: Turning,
 }
 
 /// What is zero is written as before it could be anything else, so that the hash of the scene stays.

@@ -53,6 +53,10 @@ impl Dimension {
     pub const RESISTANCE: Dimension = Dimension([2, 1, -3, 0, -2]);
     /// Inductance, H.
     pub const INDUCTANCE: Dimension = Dimension([2, 1, -2, 0, -2]);
+    /// Angle per time, rad/s.
+    pub const SPIN: Dimension = Dimension([0, 0, -1, 1, 0]);
+    /// kg m^2.
+    pub const MOMENT_OF_INERTIA: Dimension = Dimension([2, 1, 0, 0, 0]);
 
     /// What a message calls it: name with article, SI unit, an example.
     pub fn describe(self) -> (&'static str, &'static str, &'static str) {
@@ -79,6 +83,8 @@ impl Dimension {
             Dimension::CAPACITANCE => ("a capacitance", "F", "1.4 uF"),
             Dimension::RESISTANCE => ("a resistance", "Ohm", "10 Ohm"),
             Dimension::INDUCTANCE => ("an inductance", "H", "20 mH"),
+            Dimension::SPIN => ("a spin", "rad/s", "200 rad/s"),
+            Dimension::MOMENT_OF_INERTIA => ("a moment of inertia", "kg*m^2", "2 g*mm^2"),
             _ => ("a quantity", "SI", "1"),
         }
     }

@@ -14,6 +14,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, integrate};
 use crate::error::{Error, Result};
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
+use crate::kinds::rubbing::{Between as Tangential, Rubbed, Rubbing, moves_along};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::Material;
 use crate::result::{
@@ -131,6 +132,16 @@ impl ContactModel {
         if result.stop == StopReason::Cut { table.cut() } else { table }
     }
 
+    /// The same with the efficiency of all motion: what the inner body has along the surfaces counts.
+    fn of_all_motion(&self, mut table: Table, rubbed: Option<&Rubbed>) -> Table {
+        let along = rubbed.and_then(|rubbed| rubbed.sideways.inner_tangential_velocity_final);
+        if let (Some(along), Some(Some(efficiency))) = (along, table.value_mut("efficiency").map(Option::as_mut)) {
+            let [outer, inner] = self.system.masses;
+            *efficiency += inner * along * along * self.normal_share / (outer * self.setup.outer.speed.powi(2));
+        }
+        table
+    }
+
     /// What `of` makes of the impacts.
     fn with_impacts<R>(&self, of: impl FnOnce(Impacts) -> R) -> R {
         let values = |_: &System, result: &Integration| self.table(result);
@@ -150,7 +161,7 @@ impl ContactModel {
     /// The summary, what the materials remembered when the last impact began, and with which steps it converged.
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>, Option<Converged>)> {
         let start = Instant::now();
-        let options = Options { heat: true, ..self.options(tolerance) };
+        let options = self.keeping_forces(Options { heat: true, ..self.options(tolerance) })?;
         let Done { last, impacts, memory, warnings } = self.with_impacts(|all| all.all(&options))?;
         let seconds = start.elapsed().as_secs_f64();
         let mut summary = self.summary(&last, tolerance)?;
@@ -160,6 +171,38 @@ impl ContactModel {
         summary.elastic_efficiency = self.with_impacts(|all| all.elastic_efficiency(&options));
         summary.elastic_limit = self.elastic_limit(&options);
         Ok((summary, memory, last.converged))
+    }
+
+    /// `options` that keep the contact forces as well, where bodies move along the surfaces.
+    fn keeping_forces(&self, options: Options) -> Result<Options> {
+        let rubs = self.rubbing()?.is_some();
+        let sample_interval = rubs.then(|| self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
+        Ok(Options { sample_interval, forces_alone: rubs, ..options })
+    }
+
+    /// The bodies, if they move along the surfaces as the model has it: elastic ones on a wall, a plate, or each other.
+    fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
+        let GeneralImpact { outer, inner, struck, .. } = self.scene.general_impact()?;
+        let between = match struck {
+            Some(Struck::Body(_)) => return Ok(None),
+            Some(Struck::Plate(plate)) => Tangential::plate(plate),
+            Some(Struck::Wall(_)) => Tangential::Held,
+            None => Tangential::Nothing,
+        };
+        if self.memory.is_some() || !moves_along(outer, inner.as_ref()) {
+            return Ok(None);
+        }
+        let law = self.system.laws[0];
+        let contacts = [(law, [&outer.material, &self.faces[0]]); 2];
+        Ok(Some(Rubbing { outer, inner: inner.as_ref(), between, contacts }))
+    }
+
+    /// What the bodies do along the surfaces; `None` where they do not move so, or the run was cut.
+    fn rubbed(&self, result: &Integration) -> Result<Option<Rubbed>> {
+        match self.rubbing()? {
+            Some(rubbing) if result.stop != StopReason::Cut => rubbing.solve(result).map(Some),
+            _ => Ok(None),
+        }
     }
 
     /// `None` without yield strengths, and where a body relaxes or is clamped.
@@ -262,8 +305,13 @@ impl ContactModel {
         warnings.extend((face_yields && self.setup.struck_inner().is_some()).then(|| {
             "the law of plastic contacts takes the inner body's tip as flat and the outer one's as more curved instead".into()
         }));
-        if self.normal_share < 1.0 {
+        let rubbed = self.rubbed(result)?;
+        let table = self.of_all_motion(self.table(result), rubbed.as_ref());
+        if moves_along(&self.scene.general_impact()?.outer, self.setup.inner.as_ref()) && self.rubbing()?.is_none() {
             warnings.push("motion along the surfaces is omitted by the reduced model".into());
+        }
+        if self.setup.rubs() && self.memory.is_some() {
+            warnings.push("friction is omitted by the reduced model where bodies yield or relax".into());
         }
         warnings.extend(is_cut.then(|| CUT.to_owned()));
         let transmitted = self.setup.inner_mass().map(|mass| 0.5 * mass * result.velocity[1].powi(2));
@@ -291,8 +339,10 @@ impl ContactModel {
                 share: transmitted.map(|energy| energy / supplied.taken),
             }),
             losses: self.memory.is_some().then_some(result.losses),
+            friction_work: rubbed.as_ref().map(Rubbed::friction_work),
+            sideways: rubbed.map(|rubbed| rubbed.sideways),
             warnings,
-            ..Summary::of_reduced(&self.scene, Model::C, system.modes, self.table(result))
+            ..Summary::of_reduced(&self.scene, Model::C, system.modes, table)
         })
     }
 
@@ -391,6 +441,7 @@ impl SeriesModel for ContactModel {
     /// `tolerance` bounds the error of the time integration in all results.
     fn point(&self, tolerance: f64) -> Result<Point<Table>> {
         let options = error_control::all_within(tolerance, self.options(tolerance));
+        let options = self.keeping_forces(options)?;
         let result = self.with_impacts(|all| all.all(&options))?.last;
         let least = result.least_tolerance;
         balance_check(result.energy_residual, result.momentum_residual, tolerance.max(least))?;
@@ -399,7 +450,7 @@ impl SeriesModel for ContactModel {
         }
         let enough = options.results.unwrap_or(error_control::ENOUGH * options.tolerance).max(least);
         Ok(Point {
-            quantities: self.table(&result),
+            quantities: self.of_all_motion(self.table(&result), self.rubbed(&result)?.as_ref()),
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,

@@ -67,6 +67,27 @@ impl GeneralImpact {
         Cow::Owned(Self { outer, ..self.clone() })
     }
 
+    /// The same with every body's friction stated as its own, which identifies the scene.
+    fn stating_friction(mut self) -> Self {
+        let inner = self.inner.as_mut().map(|inner| &mut inner.turning);
+        for turning in [Some(&mut self.outer.turning), inner].into_iter().flatten() {
+            turning.own_friction = Some(turning.friction).filter(|friction| *friction > 0.0);
+        }
+        self
+    }
+
+    /// Whether the moments of inertia of all bodies are known.
+    pub fn has_inertia(&self) -> bool {
+        let inner = self.inner.as_ref().map(|inner| inner.turning.has_inertia(&inner.shape));
+        self.outer.turning.has_inertia(&self.outer.shape) && inner.unwrap_or(true)
+    }
+
+    /// Whether a body rubs on what it touches.
+    pub fn rubs(&self) -> bool {
+        let inner = self.inner.as_ref().map(|inner| inner.turning.friction);
+        self.outer.turning.friction > 0.0 || inner.is_some_and(|friction| friction > 0.0)
+    }
+
     /// The elastic body that is struck, if there is one.
     pub fn body(&self) -> Option<&Body> {
         if let Some(Struck::Body(body)) = &self.struck { Some(body) } else { None }
@@ -303,10 +324,12 @@ impl Language for super::Kind {
                 plate?.map(|plate| read_plate(&plate, materials).map(Struck::Plate)).transpose()?
             }
         };
-        let inner = inner_table.map(|inner| body_reading::inner(&inner, materials)).transpose()?;
-        let outer = body_reading::outer(&outer_table, materials)?;
+        let friction = root.number_or("friction", 0.0)?;
+        let inner =
+            inner_table.map(|inner| body_reading::inner(&inner, materials, friction)).transpose()?;
+        let outer = body_reading::outer(&outer_table, materials, friction)?;
         let series = body_reading::series(root)?;
-        let setup = GeneralImpact { outer, struck, inner, series };
+        let setup = GeneralImpact { outer, struck, inner, series }.stating_friction();
         let settings = root.optional_table("reference")?;
         let elements = settings
             .map_or(Ok(DEFAULT_ELEMENTS), |s| s.number_or("elements_per_contact_radius", DEFAULT_ELEMENTS))?;

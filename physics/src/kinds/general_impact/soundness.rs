@@ -2,6 +2,7 @@
 
 use super::{GeneralImpact, NAME};
 use crate::kinds::plate_impact::slenderness;
+use crate::kinds::rubbing::moves_along;
 use crate::scene::Bodies;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
@@ -83,13 +84,6 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
                 .into(),
             help: "add [run] with `end_time`, the time in which its strikes count",
         },
-        Rule {
-            fields: vec!["friction"],
-            holds: root.number_or("friction", 0.0).is_ok_and(|friction| friction == 0.0),
-            message: "`friction` has no effect: bodies that meet along their common normal do not slide"
-                .into(),
-            help: "remove `friction`",
-        },
     ])
 }
 
@@ -123,6 +117,18 @@ impl Bodies for GeneralImpact {
                     -self.outer.normal_speed()
                 ),
                 help: "raise `inner.speed` or `outer.speed`; both are positive towards the other body",
+            },
+            Rule {
+                fields: vec!["friction"],
+                holds: !self.rubs() || !moves_along(&self.outer, self.inner.as_ref()) || self.has_inertia(),
+                message: "`friction` makes the bodies turn: a compact body needs a `moment_of_inertia`".into(),
+                help: "add `moment_of_inertia`, or remove `friction`",
+            },
+            Rule {
+                fields: vec!["outer.spin", "inner.spin", "series"],
+                holds: self.series.is_none() || !moves_along(&self.outer, self.inner.as_ref()),
+                message: "`spin`: bodies that turn strike another spot each time in a series".into(),
+                help: "remove `outer.spin` and `inner.spin`, or [series]",
             },
             Rule {
                 fields: vec!["outer.angle", "series"],

@@ -97,7 +97,7 @@ fn efficiency(setup: &PlateImpact, summary: &Summary) -> Option<Statement> {
     let (outer, inner) = (&setup.outer, &setup.inner);
     let (stated, velocity) = (summary.value("efficiency")?, summary.value("inner_velocity_final")?);
     let mass_ratio = inner.shape.mass(&inner.material) / outer.shape.mass(&outer.material);
-    let along = summary.sideways.map_or(0.0, |sideways| sideways.inner_tangential_velocity_final);
+    let along = summary.sideways.and_then(|sideways| sideways.inner_tangential_velocity_final).unwrap_or(0.0);
     let efficiency = mass_ratio * (velocity.powi(2) + along.powi(2)) / outer.speed.powi(2);
     let is_mounted = outer.shape.is_mounted();
     (!is_mounted)

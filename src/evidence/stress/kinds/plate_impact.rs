@@ -8,7 +8,7 @@ use crate::dynamics::wet::FluidForces;
 use crate::error::Result;
 use crate::fluid::added_mass::{immersed, mass_factor};
 use crate::kinds::plate_impact::PlateImpact;
-use crate::scene::{Edge, Fluid, Inner, Material, Outer, Plate, Shape, ShearThinning};
+use crate::scene::{Edge, Fluid, Inner, Material, Outer, Plate, Shape, ShearThinning, Turning};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
@@ -199,7 +199,7 @@ impl StressCase {
             friction: 0.0,
             plate,
             outer,
-            inner: Inner { shape: inner_shape, material: inner_material, gap: 0.0, speed: 0.0 },
+            inner: Inner { shape: inner_shape, material: inner_material, gap: 0.0, speed: 0.0, turning: Turning::default() },
             fluid: None,
             series: None,
         };

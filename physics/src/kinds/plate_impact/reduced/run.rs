@@ -11,11 +11,12 @@ use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::kinds::general_impact::OF_COARSER;
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
-use crate::kinds::plate_impact::Kind;
+use crate::kinds::plate_impact::{Kind, PlateImpact};
 use crate::kinds::plate_impact::results::{PlateQuantities, quantities, values};
 use crate::kinds::plate_impact::trials::TruncationError;
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
+use crate::kinds::rubbing::{Between, Rubbed, Rubbing, moves_along};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::result::{self, BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary, Table, limit};
 use crate::scene::{self, Shape};
@@ -75,7 +76,7 @@ impl Reduced {
     /// The summary, what the materials remembered when the last impact began, and with which steps it converged.
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>, Option<Converged>)> {
         let start = Instant::now();
-        let options = Options { heat: true, ..self.options(tolerance) };
+        let options = self.keeping_forces(Options { heat: true, ..self.options(tolerance) })?;
         let Done { last, impacts, memory, warnings } = self.impacts().all(&options)?;
         let mut summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
         summary.warnings.extend(warnings);
@@ -83,6 +84,40 @@ impl Reduced {
         let elastic_limit = self.elastic_limit(&options)?;
         summary.warnings.extend(self.yields_by_bending(elastic_limit, &last)?);
         Ok((Summary { impacts, elastic_efficiency, elastic_limit, ..summary }, memory, last.converged))
+    }
+
+    /// `options` that keep the contact forces as well, where bodies move along the plate.
+    fn keeping_forces(&self, options: Options) -> Result<Options> {
+        let rubs = self.rubbing()?.is_some();
+        let sample_interval = rubs.then(|| self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
+        Ok(Options { sample_interval, forces_alone: rubs, ..options })
+    }
+
+    /// The bodies, if they move along the plate as the models have it: at its centre.
+    fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
+        let setup = self.scene.plate_impact()?;
+        let PlateImpact { outer, inner, plate, .. } = setup;
+        if outer.offset != 0.0 || !moves_along(outer, Some(inner)) {
+            return Ok(None);
+        }
+        let laws = self.system.laws;
+        Ok(Some(Rubbing {
+            outer,
+            inner: Some(inner),
+            between: Between::plate(plate),
+            contacts: [
+                (laws[0], [&outer.material, &plate.material]),
+                (laws[1], [&inner.material, &plate.material]),
+            ],
+        }))
+    }
+
+    /// What the bodies do along the plate, of a `result` with forces; `None` where they do not move so, or the run was cut.
+    fn rubbed(&self, result: &Integration) -> Result<Option<Rubbed>> {
+        match self.rubbing()? {
+            Some(rubbing) if result.stop != StopReason::Cut => rubbing.solve(result).map(Some),
+            _ => Ok(None),
+        }
     }
 
     /// `None` without yield strengths, and where bodies relax or bend before they strike.
@@ -147,6 +182,7 @@ impl Reduced {
     /// The results with `options`, whose ledger balances to `tolerance`.
     fn solved(&self, tolerance: f64, options: Options) -> Result<Point> {
         let options = Options { peak_error: PEAK_ERROR * options.tolerance, ..options };
+        let options = self.keeping_forces(options)?;
         let result = self.impacts().all(&options)?.last;
         balance_check(
             result.energy_residual,
@@ -156,7 +192,10 @@ impl Reduced {
         let enough =
             options.results.unwrap_or(error_control::ENOUGH * options.tolerance).max(result.least_tolerance);
         Ok(Point {
-            quantities: self.of_all_energy(quantities(&self.system, &result)?),
+            quantities: self.of_all_energy(
+                quantities(&self.system, &result)?,
+                self.rubbed(&result)?.as_ref(),
+            ),
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
@@ -213,10 +252,14 @@ impl Reduced {
         Ok(Outcome { summary, history })
     }
 
-    /// `quantities` of the motion along the plate's normal with the efficiency relative to all kinetic energy of the outer body.
-    fn of_all_energy(&self, quantities: PlateQuantities) -> PlateQuantities {
-        let angle = self.scene.plate_impact().map_or(0.0, |setup| setup.outer.angle);
-        PlateQuantities { efficiency: quantities.efficiency * angle.cos().powi(2), ..quantities }
+    /// `quantities` of the motion along the plate's normal with the efficiency of all motion.
+    fn of_all_energy(&self, quantities: PlateQuantities, rubbed: Option<&Rubbed>) -> PlateQuantities {
+        let Ok(PlateImpact { outer, .. }) = self.scene.plate_impact() else { return quantities };
+        let [outer_mass, inner_mass] = self.system.masses;
+        let along = rubbed.and_then(|rubbed| rubbed.sideways.inner_tangential_velocity_final);
+        let along = along.map_or(0.0, |along| inner_mass * along * along / (outer_mass * outer.speed * outer.speed));
+        let efficiency = quantities.efficiency * outer.angle.cos().powi(2) + along;
+        PlateQuantities { efficiency, ..quantities }
     }
 
     /// Relative error by the mesh of the plate, from what a coarser one changes.
@@ -244,7 +287,8 @@ impl Reduced {
         warnings.extend(mesh_error.filter(|error| *error > LARGEST_MESH_ERROR).map(|error| {
             format!("the plate's mesh changes forces or efficiency by about {:.1} %", 100.0 * error)
         }));
-        if setup.friction > 0.0 {
+        let rubbed = self.rubbed(result)?;
+        if setup.rubs() && (setup.outer.offset != 0.0 || self.memory.is_some()) {
             warnings.push("friction is omitted by the reduced models; the reference includes it".into());
         }
         warnings.extend(film_warning(result.losses.squeeze_film, system));
@@ -279,12 +323,12 @@ impl Reduced {
         warnings.extend(unresolved(system, result, tolerance));
         warnings.extend(uncountable(result, tolerance));
         warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
-        if self.scene.plate_impact()?.outer.angle != 0.0 {
+        if self.scene.plate_impact()?.outer.angle != 0.0 && self.rubbing()?.is_none() {
             warnings.push(
                 "motion along the plate is omitted by the reduced models; the reference includes it".into(),
             );
         }
-        let values = self.of_all_energy(values(system, result));
+        let values = self.of_all_energy(values(system, result), rubbed.as_ref());
         let mut table = values.table();
         if result.stop == StopReason::Cut {
             table = table.cut();
@@ -328,6 +372,8 @@ impl Reduced {
                 || self.fluid.is_some()
                 || self.memory.is_some())
             .then_some(result.losses),
+            friction_work: rubbed.as_ref().map(Rubbed::friction_work),
+            sideways: rubbed.map(|rubbed| rubbed.sideways),
             warnings,
             choice: self.choice.clone(),
             ..Summary::of_reduced(&self.scene, self.model, system.modes, table)

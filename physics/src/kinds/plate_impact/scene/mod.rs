@@ -48,6 +48,11 @@ impl PlateImpact {
         Cow::Owned(Self { outer, ..self.clone() })
     }
 
+    /// Whether a body rubs on the plate.
+    pub fn rubs(&self) -> bool {
+        self.outer.turning.friction > 0.0 || self.inner.turning.friction > 0.0
+    }
+
     /// Materials of outer body, plate and inner body.
     pub fn materials(&self) -> [&Material; 3] {
         [&self.outer.material, &self.plate.material, &self.inner.material]

@@ -29,11 +29,12 @@ pub(in crate::kinds) fn plate(plate: &Node, materials: &Node) -> Result<Plate> {
 /// The bodies of a plate impact.
 pub(super) fn plate_impact(root: &Node, materials: &Node) -> Result<PlateImpact> {
     let plate = plate(&root.table("plate")?, materials)?;
+    let friction = root.number_or("friction", 0.0)?;
     Ok(PlateImpact {
         fluid: root.optional_table("fluid")?.map(|f| fluid(&f, &plate)).transpose()?,
-        friction: root.number_or("friction", 0.0)?,
-        outer: body_reading::outer(&root.table("outer")?, materials)?,
-        inner: body_reading::inner(&root.table("inner")?, materials)?,
+        friction,
+        outer: body_reading::outer(&root.table("outer")?, materials, friction)?,
+        inner: body_reading::inner(&root.table("inner")?, materials, friction)?,
         plate,
         series: body_reading::series(root)?,
     })

@@ -43,8 +43,9 @@ impl Bodies for PlateImpact {
             !(yields && !(body.relaxation.is_empty() && plate.material.relaxation.is_empty()))
         };
         let dry = self.fluid.is_none() && plate.damping_ratio == 0.0 && self.series.is_none();
-        let spheres =
-            [&self.outer.shape, &self.inner.shape].iter().all(|shape| matches!(shape, Shape::Sphere { .. }));
+        let turn = self.outer.turning.has_inertia(&self.outer.shape)
+            && self.inner.turning.has_inertia(&self.inner.shape);
+        let straight = self.outer.is_centred() && self.outer.turning.spin == 0.0 && self.inner.turning.spin == 0.0;
         let (resistance, striking) = strongest_drive(&self.outer.shape);
         broken(vec![
             slenderness(plate),
@@ -65,9 +66,15 @@ impl Bodies for PlateImpact {
             },
             Rule {
                 fields: vec!["friction"],
-                holds: self.outer.is_centred() || self.friction == 0.0 || spheres,
-                message: "`friction` in an off-centre or oblique impact makes the bodies rotate: both must be spheres, since the moment of inertia of other bodies is not known".into(),
-                help: "use spheres, or remove `friction`",
+                holds: straight || !self.rubs() || turn,
+                message: "`friction` makes the bodies turn in an off-centre or oblique impact, or with `spin`: both must be spheres, or have a `moment_of_inertia`".into(),
+                help: "use spheres, add `moment_of_inertia` to a compact body, or remove `friction`",
+            },
+            Rule {
+                fields: vec!["outer.spin", "inner.spin"],
+                holds: straight || (elastic && dry),
+                message: "`spin` needs elastic bodies, no fluid, an undamped plate and one impact".into(),
+                help: "remove `outer.spin` and `inner.spin`, or fluid, damping, `hardening`, `relaxation`, `loss_factor` and series",
             },
             Rule {
                 fields: vec!["fluid"],

@@ -12,7 +12,7 @@ use crate::kinds::plate_impact::reduced::Reduced;
 use crate::kinds::plate_impact::shared::SharedBodies;
 use crate::scene::{
     Edge, Geometry, Inner, Material, Model, Outer, Plate, ReducedSettings, ReferenceSettings, RunSettings,
-    Scene, Shape,
+    Scene, Shape, Turning,
 };
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -39,7 +39,7 @@ pub fn impact(radius: f64, thickness: f64, edge: Edge, material: Material, spher
         friction: 0.0,
         plate: Plate { radius, thickness, edge, material, damping_ratio: 0.0 },
         outer: Outer::centred(shape.clone(), steel(), SPEED),
-        inner: Inner { shape, material: steel(), gap: 0.0, speed: 0.0 },
+        inner: Inner { shape, material: steel(), gap: 0.0, speed: 0.0, turning: Turning::default() },
         fluid: None,
         series: None,
     }

@@ -15,7 +15,7 @@ use crate::evidence::study::{Axis, Cell, Claim, Note, Panel, Study};
 use crate::kinds::plate_impact::PlateImpact;
 use crate::kinds::plate_impact::reduced::Reduced;
 use crate::result::Summary;
-use crate::scene::{Bender, Edge, Inner, Material, Model, Outer, Plate, Shape};
+use crate::scene::{Bender, Edge, Inner, Material, Model, Outer, Plate, Shape, Turning};
 
 /// Radius and thickness of the membrane in m.
 const MEMBRANE: [f64; 2] = [3.1e-3, 0.1e-3];
@@ -61,7 +61,7 @@ pub fn setup(shape: Shape, speed: f64) -> PlateImpact {
         friction: 0.0,
         plate: Plate { radius, thickness, edge: Edge::Clamped, material: titanium(), damping_ratio: 0.0 },
         outer: Outer::centred(shape, sapphire(), speed),
-        inner: Inner { shape: Shape::Sphere { radius: SPHERE }, material: sapphire(), gap: 0.0, speed: 0.0 },
+        inner: Inner { shape: Shape::Sphere { radius: SPHERE }, material: sapphire(), gap: 0.0, speed: 0.0, turning: Turning::default() },
         fluid: None,
         series: None,
     }

@@ -1,0 +1,144 @@
+//! Bodies that strike obliquely or turn: their motion along the surfaces they touch, from the forces across them.
+
+use crate::contact::{Hertz, TangentialContact};
+use crate::dynamics::integration::Integration;
+use crate::dynamics::sliding::{Slid, Sliding, TurningBody};
+use crate::error::{Error, Result};
+use crate::material::Material;
+use crate::result::Sideways;
+use crate::scene::{Inner, Outer, Plate, Shape, Turning};
+
+/// What lies between outer and inner body.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Between {
+    /// Nothing: they touch each other.
+    Nothing,
+    /// A body that does not move along its surface.
+    Held,
+    /// A plate that does.
+    Free {
+        /// Mass in kg.
+        mass: f64,
+        /// Moment of inertia about a diameter, kg m^2.
+        inertia: f64,
+        /// Distance of its middle from the contacts, m.
+        arm: f64,
+    },
+}
+
+impl Between {
+    /// Of a plate.
+    pub(super) fn plate(plate: &Plate) -> Self {
+        if plate.edge != crate::scene::Edge::Free {
+            return Self::Held;
+        }
+        let (mass, arm) = (plate.mass(), 0.5 * plate.thickness);
+        Self::Free { mass, arm, inertia: mass * (0.25 * plate.radius.powi(2) + arm * arm / 3.0) }
+    }
+}
+
+/// Bodies, and what they touch.
+pub(super) struct Rubbing<'a> {
+    pub(super) outer: &'a Outer,
+    pub(super) inner: Option<&'a Inner>,
+    pub(super) between: Between,
+    /// Laws and materials (tip, face) of both contacts.
+    pub(super) contacts: [(Hertz, [&'a Material; 2]); 2],
+}
+
+/// Motion along the surfaces, and the energy that friction took.
+pub(super) struct Rubbed {
+    pub(super) sideways: Sideways,
+    /// In both contacts, J.
+    pub(super) dissipated: [f64; 2],
+}
+
+impl Rubbed {
+    /// Energy that friction dissipates, J.
+    pub(super) fn friction_work(&self) -> f64 {
+        self.dissipated.iter().sum()
+    }
+}
+
+/// The body of this `shape` where it touches; `None` of one that does not turn freely or whose inertia is not known.
+fn turning_body(shape: &Shape, material: &Material, turning: &Turning) -> Option<TurningBody> {
+    let (mass, arm) = (shape.mass(material), shape.tip_radius());
+    let inertia = match shape {
+        Shape::Sphere { radius } => 0.4 * mass * radius * radius,
+        Shape::Compact { .. } => turning.moment_of_inertia?,
+        Shape::Bender(_) | Shape::Stack(_) => return None,
+    };
+    Some(TurningBody { mass, inertia, arm })
+}
+
+/// Whether bodies move along the surfaces they meet, or turn.
+pub(super) fn moves_along(outer: &Outer, inner: Option<&Inner>) -> bool {
+    outer.angle != 0.0 || outer.turning.spin != 0.0 || inner.is_some_and(|inner| inner.turning.spin != 0.0)
+}
+
+impl Rubbing<'_> {
+    /// What they do under the contact forces that `result` has as its history.
+    ///
+    /// # Errors
+    /// [`Error::Internal`] without that history.
+    pub(super) fn solve(&self, result: &Integration) -> Result<Rubbed> {
+        let frictions = [self.outer.turning.friction, self.inner.map_or(0.0, |inner| inner.turning.friction)];
+        let outer = turning_body(&self.outer.shape, &self.outer.material, &self.outer.turning);
+        let inner =
+            self.inner.and_then(|inner| turning_body(&inner.shape, &inner.material, &inner.turning));
+        let along = self.outer.speed * self.outer.angle.sin();
+        let spins = [self.outer.turning.spin, self.inner.map_or(0.0, |inner| inner.turning.spin)];
+        let slid = match frictions.iter().any(|friction| *friction > 0.0) {
+            true => self.slide([outer, inner], along, spins, frictions, result)?,
+            false => Slid::default(),
+        };
+        let [at_outer, at_inner] = slid.impulse;
+        // forces along x on the outer body's lower and the inner body's upper side
+        let (pushed, turned) = match self.between {
+            Between::Nothing => (at_outer, at_outer),
+            _ => (-at_inner, -at_inner),
+        };
+        let per_mass = |body: Option<TurningBody>| body.map_or(0.0, |body| 1.0 / body.mass);
+        let per_inertia = |body: Option<TurningBody>| body.map_or(0.0, |body| body.arm / body.inertia);
+        Ok(Rubbed {
+            sideways: Sideways {
+                outer_tangential_velocity_final: along - at_outer * per_mass(outer),
+                inner_tangential_velocity_final: self.inner.map(|_| pushed * per_mass(inner)),
+                outer_spin_final: spins[0] + at_outer * per_inertia(outer),
+                inner_spin_final: self.inner.map(|_| spins[1] + turned * per_inertia(inner)),
+            },
+            dissipated: slid.dissipated,
+        })
+    }
+
+    fn slide(
+        &self,
+        bodies: [Option<TurningBody>; 2],
+        along: f64,
+        spins: [f64; 2],
+        frictions: [f64; 2],
+        result: &Integration,
+    ) -> Result<Slid> {
+        let history = result.history.as_ref();
+        let history = history.ok_or_else(|| Error::Internal("the forces were not kept".into()))?;
+        let mobilities = bodies.map(|body| body.map_or(0.0, |body| body.mobility()));
+        let arms = bodies.map(|body| body.map_or(0.0, |body| body.arm));
+        let surfaces = [along - spins[0] * arms[0], spins[1] * arms[1]];
+        let [first, second] = mobilities;
+        let (mobility, velocity) = match self.between {
+            Between::Nothing => ([[first + second, 0.0], [0.0; 2]], [surfaces[0] - surfaces[1], 0.0]),
+            Between::Held => ([[first, 0.0], [0.0, second]], surfaces),
+            Between::Free { mass, inertia, arm } => {
+                let (push, turn) = (1.0 / mass, arm * arm / inertia);
+                ([[first + push + turn, push - turn], [push - turn, second + push + turn]], surfaces)
+            }
+        };
+        let contact = |i: usize| {
+            let (law, materials) = self.contacts[i];
+            let peak = result.contacts[i].force_peak;
+            (peak > 0.0).then(|| TangentialContact::new(law, materials, frictions[i], peak))
+        };
+        Sliding { contacts: [contact(0), contact(1)], mobility, flexibility: [[0.0; 2]; 2], velocity }
+            .slide(history)
+    }
+}
