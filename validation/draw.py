@@ -142,7 +142,7 @@ def _of_spheres(scene: Table) -> Table:
 
 
 def friction(point: Point) -> Table:
-    """With friction in both contacts, of spheres. The models omit it."""
+    """With friction in both contacts, of spheres."""
     return _of_spheres(dry(point)) | {"friction": point.log(0.03, 0.5)}
 
 

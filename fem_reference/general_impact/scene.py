@@ -71,6 +71,8 @@ class Scene(ImpactScene):
     """Of the inner body towards the other one at the start, m/s."""
     inner_friction: Annotated[float, At("inner.friction")] = 0.0
     friction: float = 0.0
+    outer_spin: Annotated[float, At("outer.spin")] = 0.0
+    inner_spin: Annotated[float, At("inner.spin")] = 0.0
     series: object = None
     fluid: object = None
     elements_per_contact_radius: Annotated[float, At("reference.elements_per_contact_radius")]
@@ -188,6 +190,8 @@ def _refusals(scene: Scene) -> Iterator[tuple[bool, str]]:
         ("friction", scene.friction),
         ("outer.friction", scene.outer_friction),
         ("inner.friction", scene.inner_friction),
+        ("outer.spin", scene.outer_spin),
+        ("inner.spin", scene.inner_spin),
     ):
         yield value != 0.0, f"{name} is {value:g}; this solver has none: it must be 0"
     for name in ("series", "fluid"):

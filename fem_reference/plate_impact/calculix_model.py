@@ -41,7 +41,7 @@ def require_supported(scene: Scene, options: Options) -> None:
         ),
         "fluid is given; it must be absent": scene.fluid is not None,
         "series is given; it must be absent": scene.series is not None,
-        f"friction is {scene.friction:g}; it must be 0": scene.friction > 0.0,
+        f"friction is {max(scene.frictions.values()):g}; it must be 0": scene.rubs,
         f"plate.damping_ratio is {scene.plate.damping_ratio:g}; it must be 0": (
             scene.plate.damping_ratio > 0.0
         ),

@@ -89,7 +89,7 @@ def half_model(
             contacts.append(
                 SphereContact(
                     *(name, 0, near, len(rigid) - 1, ball.centre, ball.radius),
-                    friction=scene.friction,
+                    friction=scene.frictions[name],
                 )
             )
             continue
@@ -100,7 +100,7 @@ def half_model(
         )
         numbers[name] = len(elastic)
         elastic.append(ElasticBody(mesh, body.material, symmetry_plane(mesh, 1), velocity))
-        contacts.append(_contact(name, pairing, plate, near, mesh, scene.friction))
+        contacts.append(_contact(name, pairing, plate, near, mesh, scene.frictions[name]))
         pairings.append(pairing)
         areas = nodal_areas(mesh, pairing.facets)
         nodes = _around(mesh, areas, x, zone)

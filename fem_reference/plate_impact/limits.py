@@ -73,10 +73,15 @@ def _bodies(scene: Scene) -> Iterator[tuple[bool, str]]:
     ):
         yield ratio >= 1.0, f"{name} is {ratio:g}; it must be below 1"
     yield (
-        scene.friction > 0.0 and not all(isinstance(b, Sphere) for b in (outer, scene.inner)),
-        f"friction is {scene.friction:g}; this solver has it between spheres and plate, elsewhere "
-        "it must be 0",
+        scene.rubs and not all(isinstance(b, Sphere) for b in (outer, scene.inner)),
+        f"friction is {max(scene.frictions.values()):g}; this solver has it between spheres and "
+        "plate, elsewhere it must be 0",
     )
+    for name, spin in (("outer", scene.outer_spin), ("inner", scene.inner_spin)):
+        yield (
+            spin != 0.0,
+            f"{name}.spin is {spin:g} rad/s; this solver begins without spin: it must be 0",
+        )
     for name, body in (("outer", outer), ("inner", scene.inner)):
         yield (
             solid and isinstance(body, Compact) and name not in scene.rigid,

@@ -383,7 +383,7 @@ def build_system(
                 surface.radii,
                 gap + sphere_profile(made.tip_radius, surface.radii),
                 tip_flexibility(made.material, surface.radii) if deforms else None,
-                scene.friction,
+                scene.frictions[name],
             )
         )
     faces, shares = _watched(scene, mesh.plate)

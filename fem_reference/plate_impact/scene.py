@@ -54,7 +54,12 @@ class Scene(ImpactScene):
     inner_speed: Annotated[float, At("inner.speed")] = 0.0
     """Speed of the inner body towards the plate at the start, m/s; negative: away from it."""
     friction: float = 0.0
-    """Coulomb's coefficient of both contacts."""
+    """Coulomb's coefficient of contacts whose body states none."""
+    outer_friction: Annotated[float | None, At("outer.friction")] = None
+    inner_friction: Annotated[float | None, At("inner.friction")] = None
+    outer_spin: Annotated[float, At("outer.spin")] = 0.0
+    inner_spin: Annotated[float, At("inner.spin")] = 0.0
+    """rad/s; 0: nothing else is solved."""
     series: Series | None
     """None: a single impact."""
     elements_per_contact_radius: Annotated[float, At("reference.elements_per_contact_radius")]
@@ -73,6 +78,17 @@ class Scene(ImpactScene):
     def rigid(self) -> tuple[str, ...]:
         """Bodies ("outer", "inner") that are rigid, tip included."""
         return RIGID[self.rigid_bodies]
+
+    @property
+    def frictions(self) -> dict[str, float]:
+        """Coulomb's coefficient by the body that touches the plate."""
+        own = {"outer": self.outer_friction, "inner": self.inner_friction}
+        return {name: self.friction if mu is None else mu for name, mu in own.items()}
+
+    @property
+    def rubs(self) -> bool:
+        """Whether any contact has friction."""
+        return any(friction > 0.0 for friction in self.frictions.values())
 
     @property
     def centred(self) -> bool:

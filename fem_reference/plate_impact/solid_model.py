@@ -207,7 +207,7 @@ def plate_model(
             rigid.append(RigidBody(name, share(QUARTER) * body.mass, along, (0.0, 0.0, speed)))
             place = (0.0, 0.0, height + side * (body.tip_radius + gap))
             tip = SphereContact(
-                name, 0, near, len(rigid) - 1, place, body.tip_radius, friction=scene.friction
+                name, 0, near, len(rigid) - 1, place, body.tip_radius, friction=scene.frictions[name]
             )
             contacts.append(tip)
             continue
@@ -215,7 +215,7 @@ def plate_model(
         numbers[name] = len(elastic)
         elastic.append(ElasticBody(mesh, body.material, _symmetry(mesh), (0.0, 0.0, speed)))
         contact, area = _sphere_on_plate(
-            name, mesh, numbers[name], plate, face, body, side, gap, zone, scene.friction
+            name, mesh, numbers[name], plate, face, body, side, gap, zone, scene.frictions[name]
         )
         contacts.append(contact)
         patches[name, name] = (contact.nodes, area)

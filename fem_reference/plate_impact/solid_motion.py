@@ -25,7 +25,7 @@ class SolidMotion:
 
     def __init__(self, loop: Loop, plate: PlateModel, scene: Scene) -> None:
         self.loop, self.plate, self.share = loop, plate, plate.fraction
-        self._rough = scene.friction > 0.0
+        self._rough = scene.rubs
         self.gaps, self.free = (0.0, scene.gap), scene.plate.edge == "free"
         masses = loop.body_masses()
 

@@ -62,6 +62,7 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"wall": WALL, "outer__angle": 0.1}, "outer.angle is 0.1"),
     ({"wall": WALL, "outer__kind": "bender"}, 'outer.kind is "bender"'),
     ({"wall": WALL, "friction": 0.2}, "friction is 0.2"),
+    ({"wall": WALL, "outer__spin": 20.0}, "outer.spin is 20"),
     ({"wall": WALL, "series": {"impacts": 2}}, "series is given"),
     ({"plate": PLATE | {"damping_ratio": 0.01}}, "plate.damping_ratio is 0.01"),
     ({"body": BODY | {"damping_ratio": 0.02}}, "body.damping_ratio is 0.02"),

@@ -113,6 +113,7 @@ def test_what_an_oblique_impact_cannot_have() -> None:
     compact = {"kind": "compact", "mass": 1e-3, "tip_radius": 1e-2, "material": STEEL, "gap": 0.0}
     changes: tuple[tuple[dict[str, Any], str], ...] = (
         ({"outer__angle": 0.1, "friction": 0.1, "inner": compact}, r"friction is 0.1"),
+        ({"outer__spin": 20.0}, r"outer.spin is 20 rad/s"),
         ({"outer__offset": 1e-3, "series": {"impacts": 2, "sphere_spot": "same"}}, "series"),
     )
     for change, said in changes:

@@ -22,7 +22,13 @@ pub fn scaled_plate(radius: f64, speed: f64) -> PlateImpact {
             damping_ratio: 0.0,
         },
         outer: Outer::centred(Shape::Sphere { radius }, steel.clone(), speed),
-        inner: Inner { shape: Shape::Sphere { radius }, material: steel, gap: 0.0, speed: 0.0, turning: Turning::default() },
+        inner: Inner {
+            shape: Shape::Sphere { radius },
+            material: steel,
+            gap: 0.0,
+            speed: 0.0,
+            turning: Turning::default(),
+        },
         fluid: None,
         series: None,
     }

@@ -87,7 +87,13 @@ pub fn scene() -> Scene {
                 damping_ratio: 0.0,
             },
             outer: Outer::centred(sphere.clone(), steel.clone(), SPEED),
-            inner: Inner { shape: sphere, material: steel, gap: 0.0, speed: 0.0, turning: Turning::default() },
+            inner: Inner {
+                shape: sphere,
+                material: steel,
+                gap: 0.0,
+                speed: 0.0,
+                turning: Turning::default(),
+            },
             fluid: None,
             series: None,
         }
@@ -200,6 +206,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         convergence: None,
         mesh: None,
         sideways: None,
+        friction_work: None,
         bender: None,
         stack: None,
         contact_pressure: None,

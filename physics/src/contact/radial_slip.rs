@@ -15,13 +15,18 @@ const POINTS: usize = 400;
 
 /// Dundurs' second parameter beta of a tip and a face; 0 of like materials, positive of a tip that is compressible more easily.
 pub fn dundurs_beta(tip: &Material, face: &Material) -> f64 {
-    let of = |material: &Material, part: f64| (1.0 - part * material.poisson_ratio) / material.shear_modulus();
+    let of =
+        |material: &Material, part: f64| (1.0 - part * material.poisson_ratio) / material.shear_modulus();
     0.5 * (of(tip, 2.0) - of(face, 2.0)) / (of(tip, 1.0) + of(face, 1.0))
 }
 
 /// Radial displacement of the tip over the face for the spring at `place` since the two met there, over 1/R, in m^2; both lengths in m.
 /// Without friction, by Hertz's pressure over the contact `radius`.
 pub fn parted(beta: f64, place: f64, radius: f64) -> f64 {
+    // at the edge it vanishes, but not in rounding
+    if place >= radius {
+        return 0.0;
+    }
     let ring = radius * radius - place * place;
     -2.0 * beta / PI * (ring * (place / radius).atanh() + place * (radius - place))
 }
@@ -70,7 +75,8 @@ mod tests {
             let logarithm = (3.0 - 4.0 * nu).ln();
             let integrand = |t: f64| 2.0 * t * (logarithm / (2.0 * PI) * ((1.0 - t) / (1.0 + t)).ln()).cos();
             let count = 100_000;
-            let integral = (0..count).map(|k| integrand((k as f64 + 0.5) / count as f64)).sum::<f64>() / count as f64;
+            let integral =
+                (0..count).map(|k| integrand((k as f64 + 0.5) / count as f64)).sum::<f64>() / count as f64;
             let exact = (1.0 - nu) * logarithm / (1.0 - 2.0 * nu) * integral.sqrt();
             let found = stiffening(beta, 1e6);
             // a tenth of what friction does: of the second order in beta

@@ -198,7 +198,11 @@ impl MovingBody {
     fn rigid_outer(outer: &Outer) -> Self {
         let stack = if let Shape::Stack(stack) = outer.shape { Some(stack) } else { None };
         let friction = outer.turning.friction;
-        Self { stack, friction, ..Self::rigid(&outer.shape, &outer.material, [outer.speed, -outer.speed], 0.0) }
+        Self {
+            stack,
+            friction,
+            ..Self::rigid(&outer.shape, &outer.material, [outer.speed, -outer.speed], 0.0)
+        }
     }
 
     /// The inner body, which is rigid.

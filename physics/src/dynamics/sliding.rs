@@ -51,8 +51,6 @@ pub struct Slid {
     pub impulse: [f64; 2],
     /// Energy dissipated in the contacts, J.
     pub dissipated: [f64; 2],
-    /// Energy that still strains the contacts in the end, J.
-    pub stored: f64,
 }
 
 impl Sliding {
@@ -91,8 +89,7 @@ impl Sliding {
             }
         }
         for (i, contact) in self.contacts.iter().enumerate() {
-            slid.dissipated[i] = contact.as_ref().map_or(0.0, |contact| contact.dissipated);
-            slid.stored += contact.as_ref().map_or(0.0, TangentialContact::stored);
+            slid.dissipated[i] = contact.as_ref().map_or(0.0, TangentialContact::dissipated);
         }
         Ok(slid)
     }

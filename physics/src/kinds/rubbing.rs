@@ -84,8 +84,7 @@ impl Rubbing<'_> {
     pub(super) fn solve(&self, result: &Integration) -> Result<Rubbed> {
         let frictions = [self.outer.turning.friction, self.inner.map_or(0.0, |inner| inner.turning.friction)];
         let outer = turning_body(&self.outer.shape, &self.outer.material, &self.outer.turning);
-        let inner =
-            self.inner.and_then(|inner| turning_body(&inner.shape, &inner.material, &inner.turning));
+        let inner = self.inner.and_then(|inner| turning_body(&inner.shape, &inner.material, &inner.turning));
         let along = self.outer.speed * self.outer.angle.sin();
         let spins = [self.outer.turning.spin, self.inner.map_or(0.0, |inner| inner.turning.spin)];
         let slid = match frictions.iter().any(|friction| *friction > 0.0) {

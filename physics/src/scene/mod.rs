@@ -35,8 +35,7 @@ pub use field::{Field, Rejected};
 pub use flight::{Flight, FlightSpring, Flyer, Vibration};
 pub(crate) use language::{Alias, Dialect, FileFault, Grammar, Language};
 pub use parts::{
-    Bender, Edge, Fluid, Inner, Outer, Plate, Series, Shape, ShearThinning, Spot, Stack, Supply,
-    Turning,
+    Bender, Edge, Fluid, Inner, Outer, Plate, Series, Shape, ShearThinning, Spot, Stack, Supply, Turning,
 };
 pub use plausibility::doubts;
 pub use quantity::in_unit as quantity_in;

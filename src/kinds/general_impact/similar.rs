@@ -50,7 +50,10 @@ pub(super) fn numbers(setup: &GeneralImpact) -> Vec<(&'static str, f64)> {
         ),
         ("Poisson's ratio of the struck body", face.poisson_ratio),
         ("mass of the inner body over the outer one's", setup.inner_mass().unwrap_or(0.0) / mass),
-        ("speed of the inner body over the outer one's", inner.map_or(0.0, |inner| inner.speed) / outer.speed),
+        (
+            "speed of the inner body over the outer one's",
+            inner.map_or(0.0, |inner| inner.speed) / outer.speed,
+        ),
         (
             "gap of the inner body over the outer one's tip radius",
             inner.map_or(0.0, |inner| inner.gap) / outer.shape.tip_radius(),

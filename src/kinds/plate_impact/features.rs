@@ -28,7 +28,7 @@ pub(super) static FEATURES: [Feature; 23] = [
     Feature::new("impacts in series", |s| plate(s, |p| p.series.is_some())),
     Feature::new("bender", |s| plate(s, |p| matches!(p.outer.shape, Shape::Bender(_)))).by(Form::Cantilever),
     Feature::new("stack", |s| plate(s, |p| matches!(p.outer.shape, Shape::Stack(_)))),
-    Feature::new("friction", |s| plate(s, |p| p.friction > 0.0)),
+    Feature::new("friction", |s| plate(s, PlateImpact::rubs)),
     Feature::new("off-centre impact", |s| plate(s, |p| p.outer.offset > 0.0)),
     Feature::new("oblique impact", |s| plate(s, |p| p.outer.angle != 0.0)),
     Feature::new("squeeze film", |s| fluid(s, |f| f.squeeze_film)).by(Form::Film),

@@ -22,21 +22,22 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
     if !setup.outer.is_centred() && setup.plate.edge != Edge::Clamped {
         return Err("the validation base has off-centre impacts on clamped plates only".into());
     }
-    if setup.outer.angle != 0.0 {
-        return Err("the validation base has no oblique impacts".into());
+    if setup.outer.angle != 0.0 || setup.outer.turning.spin != 0.0 || setup.inner.turning.spin != 0.0 {
+        return Err("the validation base has no oblique impacts and no spin".into());
     }
-    let is_drawn = |fluid: &Fluid| {
-        fluid.squeeze_film && fluid.drag_coefficient == 0.0 && fluid.shear_thinning.is_none()
-    };
+    let is_drawn =
+        |fluid: &Fluid| fluid.squeeze_film && fluid.drag_coefficient == 0.0 && fluid.shear_thinning.is_none();
     if setup.fluid.as_ref().is_some_and(|fluid| !is_drawn(fluid)) {
-        return Err("the validation base has Newtonian fluids with a squeeze film and without drag only".into());
+        return Err(
+            "the validation base has Newtonian fluids with a squeeze film and without drag only".into()
+        );
     }
     if setup.materials().iter().any(|material| material.rate.is_some()) {
         return Err("the validation base has no yield strength that grows with the strain rate".into());
     }
     let features = [
         (setup.fluid.is_some(), "film"),
-        (setup.friction > 0.0, "friction"),
+        (setup.rubs(), "friction"),
         (setup.relaxes(), "relaxing"),
         (setup.yields(), "yielding"),
         (!setup.outer.is_centred(), "off-centre"),
@@ -59,10 +60,7 @@ pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
     vec![
         ("thickness over radius of the plate", plate.thickness / plate.radius),
         ("Poisson's ratio of the plate", plate.material.poisson_ratio),
-        (
-            "damping ratio of the plate",
-            fluid.map_or(plate.damping_ratio, |fluid| fluid.plate_damping_ratio),
-        ),
+        ("damping ratio of the plate", fluid.map_or(plate.damping_ratio, |fluid| fluid.plate_damping_ratio)),
         (
             "modulus of the outer body over the plate's",
             outer.material.youngs_modulus / plate.material.youngs_modulus,
@@ -73,7 +71,7 @@ pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
         ),
         ("speed of the inner body over the outer one's", inner.speed / outer.speed),
         ("gap of the inner body over the plate's thickness", inner.gap / plate.thickness),
-        ("coefficient of friction", setup.friction),
+        ("coefficient of friction", outer.turning.friction.max(inner.turning.friction)),
         ("offset over radius of the plate", outer.offset / plate.radius),
         ("hardening over modulus", hardening.fold(0.0, f64::max)),
         (

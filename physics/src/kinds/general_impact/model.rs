@@ -135,9 +135,12 @@ impl ContactModel {
     /// The same with the efficiency of all motion: what the inner body has along the surfaces counts.
     fn of_all_motion(&self, mut table: Table, rubbed: Option<&Rubbed>) -> Table {
         let along = rubbed.and_then(|rubbed| rubbed.sideways.inner_tangential_velocity_final);
-        if let (Some(along), Some(Some(efficiency))) = (along, table.value_mut("efficiency").map(Option::as_mut)) {
+        if let (Some(along), Some(Some(efficiency))) =
+            (along, table.value_mut("efficiency").map(Option::as_mut))
+        {
             let [outer, inner] = self.system.masses;
-            *efficiency += inner * along * along * self.normal_share / (outer * self.setup.outer.speed.powi(2));
+            *efficiency +=
+                inner * along * along * self.normal_share / (outer * self.setup.outer.speed.powi(2));
         }
         table
     }
@@ -307,7 +310,9 @@ impl ContactModel {
         }));
         let rubbed = self.rubbed(result)?;
         let table = self.of_all_motion(self.table(result), rubbed.as_ref());
-        if moves_along(&self.scene.general_impact()?.outer, self.setup.inner.as_ref()) && self.rubbing()?.is_none() {
+        if moves_along(&self.scene.general_impact()?.outer, self.setup.inner.as_ref())
+            && self.rubbing()?.is_none()
+        {
             warnings.push("motion along the surfaces is omitted by the reduced model".into());
         }
         if self.setup.rubs() && self.memory.is_some() {

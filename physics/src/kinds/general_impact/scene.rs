@@ -325,8 +325,7 @@ impl Language for super::Kind {
             }
         };
         let friction = root.number_or("friction", 0.0)?;
-        let inner =
-            inner_table.map(|inner| body_reading::inner(&inner, materials, friction)).transpose()?;
+        let inner = inner_table.map(|inner| body_reading::inner(&inner, materials, friction)).transpose()?;
         let outer = body_reading::outer(&outer_table, materials, friction)?;
         let series = body_reading::series(root)?;
         let setup = GeneralImpact { outer, struck, inner, series }.stating_friction();

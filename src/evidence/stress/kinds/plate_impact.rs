@@ -199,7 +199,13 @@ impl StressCase {
             friction: 0.0,
             plate,
             outer,
-            inner: Inner { shape: inner_shape, material: inner_material, gap: 0.0, speed: 0.0, turning: Turning::default() },
+            inner: Inner {
+                shape: inner_shape,
+                material: inner_material,
+                gap: 0.0,
+                speed: 0.0,
+                turning: Turning::default(),
+            },
             fluid: None,
             series: None,
         };

@@ -11,11 +11,11 @@ use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::kinds::general_impact::OF_COARSER;
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
-use crate::kinds::plate_impact::{Kind, PlateImpact};
 use crate::kinds::plate_impact::results::{PlateQuantities, quantities, values};
 use crate::kinds::plate_impact::trials::TruncationError;
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
+use crate::kinds::plate_impact::{Kind, PlateImpact};
 use crate::kinds::rubbing::{Between, Rubbed, Rubbing, moves_along};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::result::{self, BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary, Table, limit};
@@ -192,10 +192,8 @@ impl Reduced {
         let enough =
             options.results.unwrap_or(error_control::ENOUGH * options.tolerance).max(result.least_tolerance);
         Ok(Point {
-            quantities: self.of_all_energy(
-                quantities(&self.system, &result)?,
-                self.rubbed(&result)?.as_ref(),
-            ),
+            quantities: self
+                .of_all_energy(quantities(&self.system, &result)?, self.rubbed(&result)?.as_ref()),
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
@@ -257,7 +255,8 @@ impl Reduced {
         let Ok(PlateImpact { outer, .. }) = self.scene.plate_impact() else { return quantities };
         let [outer_mass, inner_mass] = self.system.masses;
         let along = rubbed.and_then(|rubbed| rubbed.sideways.inner_tangential_velocity_final);
-        let along = along.map_or(0.0, |along| inner_mass * along * along / (outer_mass * outer.speed * outer.speed));
+        let along =
+            along.map_or(0.0, |along| inner_mass * along * along / (outer_mass * outer.speed * outer.speed));
         let efficiency = quantities.efficiency * outer.angle.cos().powi(2) + along;
         PlateQuantities { efficiency, ..quantities }
     }

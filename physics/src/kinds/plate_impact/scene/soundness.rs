@@ -45,7 +45,8 @@ impl Bodies for PlateImpact {
         let dry = self.fluid.is_none() && plate.damping_ratio == 0.0 && self.series.is_none();
         let turn = self.outer.turning.has_inertia(&self.outer.shape)
             && self.inner.turning.has_inertia(&self.inner.shape);
-        let straight = self.outer.is_centred() && self.outer.turning.spin == 0.0 && self.inner.turning.spin == 0.0;
+        let straight =
+            self.outer.is_centred() && self.outer.turning.spin == 0.0 && self.inner.turning.spin == 0.0;
         let (resistance, striking) = strongest_drive(&self.outer.shape);
         broken(vec![
             slenderness(plate),

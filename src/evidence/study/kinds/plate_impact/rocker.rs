@@ -61,7 +61,13 @@ pub fn setup(shape: Shape, speed: f64) -> PlateImpact {
         friction: 0.0,
         plate: Plate { radius, thickness, edge: Edge::Clamped, material: titanium(), damping_ratio: 0.0 },
         outer: Outer::centred(shape, sapphire(), speed),
-        inner: Inner { shape: Shape::Sphere { radius: SPHERE }, material: sapphire(), gap: 0.0, speed: 0.0, turning: Turning::default() },
+        inner: Inner {
+            shape: Shape::Sphere { radius: SPHERE },
+            material: sapphire(),
+            gap: 0.0,
+            speed: 0.0,
+            turning: Turning::default(),
+        },
         fluid: None,
         series: None,
     }
