@@ -54,7 +54,9 @@ def main() -> int:
     sentences: list[str] = []
     for before in random.Random(given.seed).sample(rows, count):
         path = given.scenes / f"{before['scene']}.toml"
-        sentences += moved(before, solve(path, given.program))
+        sentences += moved(
+            before, solve(path, given.program, resolution=before.get("resolution", "coarse"))
+        )
     print("\n".join(sentences) or f"{count} of {len(rows)} scenes are as they were")
     return 1 if sentences else 0
 

@@ -60,7 +60,9 @@ def of_reference(document: Row) -> Row:
     }
 
 
-def solve(path: Path, program: Path, longest: float | None = None) -> Row:
+def solve(
+    path: Path, program: Path, longest: float | None = None, resolution: str = "coarse"
+) -> Row:
     """The line of a scene with a fresh reference; or why there is none.
 
     Raises ``subprocess.TimeoutExpired`` after ``longest`` seconds.
@@ -68,7 +70,7 @@ def solve(path: Path, program: Path, longest: float | None = None) -> Row:
     begun = time.monotonic()
     file = tomllib.loads(path.read_text(encoding="utf-8"))
     with tempfile.TemporaryDirectory() as folder:
-        options = ("--compute", "--json", "--resolution", "coarse")
+        options = ("--compute", "--json", "--resolution", resolution)
         command: list[str | Path] = [program, "--store", f"{folder}/store", "compare", path]
         command += [*options, "--out", f"{folder}/page"]
         ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=longest)

@@ -37,7 +37,7 @@ const DIGITS: usize = 4;
 const DETERMINED: f64 = 0.05;
 /// Standard deviation of the errors of the base's references over their bands, which are wider than they need to be; against meshes with
 /// 1.5 times the elements in every direction (`validation/finer.py`).
-const NOISE: f64 = 0.27;
+const NOISE: f64 = 0.25;
 
 /// What a reference would find of a quantity on infinitely fine meshes.
 #[derive(Debug, Clone, PartialEq, Serialize)]

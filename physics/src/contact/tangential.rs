@@ -45,7 +45,7 @@ pub struct TangentialContact {
 }
 
 /// What a step does to the springs at a place.
-struct Step {
+struct SpringStep {
     /// Share of the motion that they take part in.
     share: f64,
     /// Their radial motion, m.
@@ -135,10 +135,10 @@ impl TangentialContact {
 
     /// While the contact radius becomes `radius` m.
     #[inline]
-    fn step(&self, place: usize, radius: f64) -> Step {
+    fn step(&self, place: usize, radius: f64) -> SpringStep {
         let place = (place as f64 + 0.5) * self.spacing;
         if place >= radius {
-            return Step { share: 0.0, radial: 0.0, most: 0.0 };
+            return SpringStep { share: 0.0, radial: 0.0, most: 0.0 };
         }
         let touched = place < self.radius;
         // what the growing contact reaches in between takes part from then on
@@ -149,7 +149,7 @@ impl TangentialContact {
         };
         let before = if touched { parted(place, self.radius) } else { 0.0 };
         let pressed = self.normal * (radius * radius - place * place) / self.law.tip_radius;
-        Step {
+        SpringStep {
             share,
             radial: parted(place, radius) - before,
             most: self.friction * pressed / self.tangential,
@@ -158,7 +158,7 @@ impl TangentialContact {
 
     /// Deflection of a spring afterwards, m.
     #[inline]
-    fn moved(&self, spring: usize, direction: usize, at: &Step, step: f64) -> [f64; 2] {
+    fn moved(&self, spring: usize, direction: usize, at: &SpringStep, step: f64) -> [f64; 2] {
         let [[along, across], radial] = [self.deflections[spring], self.directions[direction]];
         let wanted = [along + at.share * step + at.radial * radial[0], across + at.radial * radial[1]];
         let length = wanted[0].hypot(wanted[1]);

@@ -8,14 +8,14 @@ use crate::material::Material;
 use crate::result::Sideways;
 use crate::scene::{Inner, Outer, Plate, Shape, Turning};
 
-/// What lies between outer and inner body.
+/// What the outer body strikes, as far as that moves along its surface.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Between {
-    /// Nothing: they touch each other.
-    Nothing,
-    /// A body that does not move along its surface.
+pub(super) enum StruckSurface {
+    /// The inner body.
+    OtherBody,
+    /// A wall or a plate that is held.
     Held,
-    /// A plate that does.
+    /// A free plate.
     Free {
         /// Mass in kg.
         mass: f64,
@@ -26,7 +26,7 @@ pub(super) enum Between {
     },
 }
 
-impl Between {
+impl StruckSurface {
     /// Of a plate.
     pub(super) fn plate(plate: &Plate) -> Self {
         if plate.edge != crate::scene::Edge::Free {
@@ -41,7 +41,7 @@ impl Between {
 pub(super) struct Rubbing<'a> {
     pub(super) outer: &'a Outer,
     pub(super) inner: Option<&'a Inner>,
-    pub(super) between: Between,
+    pub(super) struck: StruckSurface,
     /// Laws and materials (tip, face) of both contacts.
     pub(super) contacts: [(Hertz, [&'a Material; 2]); 2],
 }
@@ -93,8 +93,8 @@ impl Rubbing<'_> {
         };
         let [at_outer, at_inner] = slid.impulse;
         // forces along x on the outer body's lower and the inner body's upper side
-        let (pushed, turned) = match self.between {
-            Between::Nothing => (at_outer, at_outer),
+        let (pushed, turned) = match self.struck {
+            StruckSurface::OtherBody => (at_outer, at_outer),
             _ => (-at_inner, -at_inner),
         };
         let per_mass = |body: Option<TurningBody>| body.map_or(0.0, |body| 1.0 / body.mass);
@@ -124,10 +124,10 @@ impl Rubbing<'_> {
         let arms = bodies.map(|body| body.map_or(0.0, |body| body.arm));
         let surfaces = [along - spins[0] * arms[0], spins[1] * arms[1]];
         let [first, second] = mobilities;
-        let (mobility, velocity) = match self.between {
-            Between::Nothing => ([[first + second, 0.0], [0.0; 2]], [surfaces[0] - surfaces[1], 0.0]),
-            Between::Held => ([[first, 0.0], [0.0, second]], surfaces),
-            Between::Free { mass, inertia, arm } => {
+        let (mobility, velocity) = match self.struck {
+            StruckSurface::OtherBody => ([[first + second, 0.0], [0.0; 2]], [surfaces[0] - surfaces[1], 0.0]),
+            StruckSurface::Held => ([[first, 0.0], [0.0, second]], surfaces),
+            StruckSurface::Free { mass, inertia, arm } => {
                 let (push, turn) = (1.0 / mass, arm * arm / inertia);
                 ([[first + push + turn, push - turn], [push - turn, second + push + turn]], surfaces)
             }

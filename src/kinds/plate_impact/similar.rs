@@ -56,7 +56,6 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
 pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
     let (plate, outer, inner) = (&setup.plate, &setup.outer, &setup.inner);
     let fluid = setup.fluid.as_ref();
-    let hardening = setup.materials().into_iter().filter_map(|of| Some(of.hardening? / of.youngs_modulus));
     vec![
         ("thickness over radius of the plate", plate.thickness / plate.radius),
         ("Poisson's ratio of the plate", plate.material.poisson_ratio),
@@ -73,7 +72,6 @@ pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
         ("gap of the inner body over the plate's thickness", inner.gap / plate.thickness),
         ("coefficient of friction", outer.turning.friction.max(inner.turning.friction)),
         ("offset over radius of the plate", outer.offset / plate.radius),
-        ("hardening over modulus", hardening.fold(0.0, f64::max)),
         (
             "minimum gap of the film over the tip radius",
             fluid.map_or(0.0, |fluid| fluid.minimum_gap / inner.shape.tip_radius()),
@@ -114,8 +112,11 @@ pub(super) fn result_numbers(
         let [storage, loss] = modulus_ratio(&material.relaxation, 0.5 / end);
         loss / storage
     };
+    let plastic = setup.materials().into_iter().filter_map(Material::plasticity);
+    let growth = plastic.map(|of| of.hardening / of.yield_strength).fold(0.0, f64::max);
     let special = [
         setup.yields().then_some(("pressure over yield strength", overload)),
+        setup.yields().then_some(("yield stress at a plastic strain of 1 over the first one", 1.0 + growth)),
         setup.relaxes().then(|| {
             let largest = setup.materials().iter().map(loss_factor).fold(0.0, f64::max);
             ("loss factor at the frequency of the contact", largest)

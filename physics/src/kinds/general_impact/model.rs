@@ -14,7 +14,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, integrate};
 use crate::error::{Error, Result};
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
-use crate::kinds::rubbing::{Between as Tangential, Rubbed, Rubbing, moves_along};
+use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, moves_along};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::Material;
 use crate::result::{
@@ -186,18 +186,18 @@ impl ContactModel {
     /// The bodies, if they move along the surfaces as the model has it: elastic ones on a wall, a plate, or each other.
     fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
         let GeneralImpact { outer, inner, struck, .. } = self.scene.general_impact()?;
-        let between = match struck {
+        let surface = match struck {
             Some(Struck::Body(_)) => return Ok(None),
-            Some(Struck::Plate(plate)) => Tangential::plate(plate),
-            Some(Struck::Wall(_)) => Tangential::Held,
-            None => Tangential::Nothing,
+            Some(Struck::Plate(plate)) => StruckSurface::plate(plate),
+            Some(Struck::Wall(_)) => StruckSurface::Held,
+            None => StruckSurface::OtherBody,
         };
         if self.memory.is_some() || !moves_along(outer, inner.as_ref()) {
             return Ok(None);
         }
         let law = self.system.laws[0];
         let contacts = [(law, [&outer.material, &self.faces[0]]); 2];
-        Ok(Some(Rubbing { outer, inner: inner.as_ref(), between, contacts }))
+        Ok(Some(Rubbing { outer, inner: inner.as_ref(), struck: surface, contacts }))
     }
 
     /// What the bodies do along the surfaces; `None` where they do not move so, or the run was cut.

@@ -16,7 +16,7 @@ use crate::kinds::plate_impact::trials::TruncationError;
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
 use crate::kinds::plate_impact::{Kind, PlateImpact};
-use crate::kinds::rubbing::{Between, Rubbed, Rubbing, moves_along};
+use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, moves_along};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::result::{self, BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary, Table, limit};
 use crate::scene::{self, Shape};
@@ -104,7 +104,7 @@ impl Reduced {
         Ok(Some(Rubbing {
             outer,
             inner: Some(inner),
-            between: Between::plate(plate),
+            struck: StruckSurface::plate(plate),
             contacts: [
                 (laws[0], [&outer.material, &plate.material]),
                 (laws[1], [&inner.material, &plate.material]),
