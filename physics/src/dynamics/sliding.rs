@@ -1,15 +1,12 @@
 //! Motion along the surfaces and spin of bodies that touch with friction.
 //!
-//! The normal motion is solved before: on a flat, symmetric surface forces along it do not move it across. Only rigid motions and the
-//! contacts' tangential flexibility take part; what is struck answers by a static flexibility.
+//! The normal motion is solved before: on a flat, symmetric surface forces along it do not move it across. Rigid motions and the contacts'
+//! tangential flexibility take part.
 
 use crate::contact::TangentialContact;
 use crate::error::{Error, Result};
 use crate::result::History;
 
-/// Iterations for the tangential forces of a step, and their relative change in the end.
-const ITERATIONS: usize = 60;
-const CONVERGED: f64 = 1e-10;
 /// Longest step over the inverse angular frequency of the sticking contact.
 const LONGEST: f64 = 0.05;
 
@@ -38,8 +35,6 @@ pub struct Sliding {
     pub contacts: [Option<TangentialContact>; 2],
     /// Relative acceleration of the surfaces per force, 1/kg. Shape (contacts, contacts).
     pub mobility: [[f64; 2]; 2],
-    /// Static displacement of the struck body's surfaces per force, m/N, beyond that of the contacts themselves.
-    pub flexibility: [[f64; 2]; 2],
     /// Relative velocity of the surfaces at t = 0 in m/s: of the outer and the inner body over what they touch.
     pub velocity: [f64; 2],
 }
@@ -64,26 +59,22 @@ impl Sliding {
             return Err(Error::Internal("the history has no contact forces".into()));
         };
         let mut slid = Slid::default();
-        // displacement of the surfaces as rigid, and its rate
-        let (mut place, mut velocity, mut strained) = ([0.0; 2], self.velocity, [0.0; 2]);
+        let mut velocity = self.velocity;
         for k in 1..history.len() {
             let (from, to) = ([outer[k - 1], inner[k - 1]], [outer[k], inner[k]]);
             let length = history.time[k] - history.time[k - 1];
-            let pressed = (0..2).any(|i| from[i] > 0.0 || to[i] > 0.0);
-            if !pressed {
-                (0..2).for_each(|i| place[i] += velocity[i] * length);
-                self.part(&mut strained, place);
-                continue;
-            }
+            // contacts that are open forget where they were
             let count = (length * self.frequency(from, to) / LONGEST).ceil().max(1.0);
             let h = length / count;
             for step in 1..=count as usize {
                 let share = step as f64 / count;
-                let normal = [0, 1].map(|i| (from[i] + share * (to[i] - from[i])).max(0.0));
                 let before = self.forces();
                 self.kick(&mut velocity, before, 0.5 * h);
-                (0..2).for_each(|i| place[i] += velocity[i] * h);
-                let after = self.hold(place, &mut strained, normal);
+                for (i, contact) in self.contacts.iter_mut().enumerate() {
+                    let normal = (from[i] + share * (to[i] - from[i])).max(0.0);
+                    contact.iter_mut().for_each(|contact| contact.advance(normal, velocity[i] * h));
+                }
+                let after = self.forces();
                 self.kick(&mut velocity, after, 0.5 * h);
                 (0..2).for_each(|i| slid.impulse[i] += 0.5 * h * (before[i] + after[i]));
             }
@@ -111,43 +102,5 @@ impl Sliding {
         for (rate, row) in velocity.iter_mut().zip(&self.mobility) {
             *rate -= h * (row[0] * forces[0] + row[1] * forces[1]);
         }
-    }
-
-    /// Contacts that are open forget where they were.
-    fn part(&mut self, strained: &mut [f64; 2], place: [f64; 2]) {
-        for contact in self.contacts.iter_mut().flatten() {
-            contact.advance(0.0, 0.0);
-        }
-        *strained = place;
-    }
-
-    /// Forces of the contacts under `normal` forces in N where the surfaces have moved to `place`, in part by straining what is struck.
-    fn hold(&mut self, place: [f64; 2], strained: &mut [f64; 2], normal: [f64; 2]) -> [f64; 2] {
-        let mut forces = self.forces();
-        let mut across = *strained;
-        for _ in 0..ITERATIONS {
-            let mut change = 0.0_f64;
-            for i in 0..2 {
-                let Some(contact) = &self.contacts[i] else { continue };
-                let row = self.flexibility[i];
-                let sticking = row[i] * contact.sticking_stiffness(normal[i]);
-                // what is left of the displacement for the contact itself
-                let left = place[i] - row[0] * forces[0] - row[1] * forces[1];
-                across[i] += (left - across[i]) / (1.0 + sticking);
-                let force = contact.trial(normal[i], across[i] - strained[i]);
-                change = change.max((force - forces[i]).abs() - CONVERGED * force.abs());
-                forces[i] = force;
-            }
-            if change <= 0.0 {
-                break;
-            }
-        }
-        for i in 0..2 {
-            if let Some(contact) = &mut self.contacts[i] {
-                contact.advance(normal[i], across[i] - strained[i]);
-                strained[i] = across[i];
-            }
-        }
-        self.forces()
     }
 }

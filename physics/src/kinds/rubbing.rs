@@ -95,7 +95,7 @@ impl Rubbing<'_> {
         // forces along x on the outer body's lower and the inner body's upper side
         let (pushed, turned) = match self.struck {
             StruckSurface::OtherBody => (at_outer, at_outer),
-            _ => (-at_inner, -at_inner),
+            _ => (0.0 - at_inner, 0.0 - at_inner),
         };
         let per_mass = |body: Option<TurningBody>| body.map_or(0.0, |body| 1.0 / body.mass);
         let per_inertia = |body: Option<TurningBody>| body.map_or(0.0, |body| body.arm / body.inertia);
@@ -135,9 +135,10 @@ impl Rubbing<'_> {
         let contact = |i: usize| {
             let (law, materials) = self.contacts[i];
             let peak = result.contacts[i].force_peak;
-            (peak > 0.0).then(|| TangentialContact::new(law, materials, frictions[i], peak))
+            // surfaces that do not move along each other stay so, unless a plate between moves them
+            let moves = velocity[i] != 0.0 || matches!(self.struck, StruckSurface::Free { .. });
+            (moves && peak > 0.0).then(|| TangentialContact::new(law, materials, frictions[i], peak))
         };
-        Sliding { contacts: [contact(0), contact(1)], mobility, flexibility: [[0.0; 2]; 2], velocity }
-            .slide(history)
+        Sliding { contacts: [contact(0), contact(1)], mobility, velocity }.slide(history)
     }
 }
