@@ -28,8 +28,8 @@ from solve import limits
 from table import Row, read, short, write
 
 QUANTILES = (0.5, 0.9, 0.95, 1.0)
-DOUBTFUL = 0.75
-"""Difference of model C and the reference over its band: nearly three standard deviations."""
+DOUBTFUL = 0.6
+"""Difference of model C and the reference over its band: more than two standard deviations."""
 NOTABLE = 2e-3
 """Difference over the value below which no scene is solved again."""
 FINE = 0.5

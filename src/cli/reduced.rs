@@ -117,7 +117,8 @@ pub fn table(summary: &Summary, has: impl Fn(&str) -> bool) -> String {
         let band = summary.band(name).map_or_else(String::new, |u| format!(" ± {}", with_unit(u, to, 2)));
         lines.push(format!("  {name:<24} {:>14}{band}", with_unit(value, to, 6)));
     }
-    for (name, value, unit) in summary.sideways.iter().flat_map(Sideways::rows) {
+    let friction = summary.friction_work.map(|work| ("friction_work", work, "J"));
+    for (name, value, unit) in summary.sideways.iter().flat_map(Sideways::rows).chain(friction) {
         let to = prefixed(unit, value);
         let band = summary.band(name).map_or_else(String::new, |u| format!(" ± {}", with_unit(u, to, 2)));
         lines.push(format!("  {name:<32} {:>14}{band}", with_unit(value, to, 6)));

@@ -176,9 +176,9 @@ impl ContactModel {
         Ok((summary, memory, last.converged))
     }
 
-    /// `options` that keep the contact forces as well, where bodies move along the surfaces.
+    /// `options` that keep the contact forces as well, where friction moves bodies along the surfaces.
     fn keeping_forces(&self, options: Options) -> Result<Options> {
-        let rubs = self.rubbing()?.is_some();
+        let rubs = self.setup.rubs() && self.rubbing()?.is_some();
         let sample_interval = rubs.then(|| self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
         Ok(Options { sample_interval, forces_alone: rubs, ..options })
     }

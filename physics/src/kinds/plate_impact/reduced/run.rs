@@ -86,9 +86,9 @@ impl Reduced {
         Ok((Summary { impacts, elastic_efficiency, elastic_limit, ..summary }, memory, last.converged))
     }
 
-    /// `options` that keep the contact forces as well, where bodies move along the plate.
+    /// `options` that keep the contact forces as well, where friction moves bodies along the plate.
     fn keeping_forces(&self, options: Options) -> Result<Options> {
-        let rubs = self.rubbing()?.is_some();
+        let rubs = self.scene.plate_impact()?.rubs() && self.rubbing()?.is_some();
         let sample_interval = rubs.then(|| self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
         Ok(Options { sample_interval, forces_alone: rubs, ..options })
     }
