@@ -207,7 +207,13 @@ def plate_model(
             rigid.append(RigidBody(name, share(QUARTER) * body.mass, along, (0.0, 0.0, speed)))
             place = (0.0, 0.0, height + side * (body.tip_radius + gap))
             tip = SphereContact(
-                name, 0, near, len(rigid) - 1, place, body.tip_radius, friction=scene.frictions[name]
+                name,
+                0,
+                near,
+                len(rigid) - 1,
+                place,
+                body.tip_radius,
+                friction=scene.frictions[name],
             )
             contacts.append(tip)
             continue
