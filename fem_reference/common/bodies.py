@@ -169,6 +169,8 @@ class Compact:
     """m"""
     material: Material
     """Of the tip."""
+    moment_of_inertia: float | None = None
+    """kg m^2; no reference turns such a body."""
 
 
 @dataclass(frozen=True)

@@ -68,7 +68,10 @@ impl MovingBody {
     pub fn outer(outer: &Outer) -> Result<Self> {
         let bender = match &outer.shape {
             Shape::Bender(bender) => bender,
-            Shape::Stack(stack) => return Self::stack(stack, &outer.material),
+            Shape::Stack(stack) => {
+                let friction = outer.turning.friction;
+                return Ok(Self { friction, ..Self::stack(stack, &outer.material)? });
+            }
             Shape::Sphere { .. } | Shape::Compact { .. } => return Ok(Self::rigid_outer(outer)),
         };
         let release = Release::new(bender)?;

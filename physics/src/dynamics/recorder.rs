@@ -100,6 +100,7 @@ impl<'a, const P: usize> Recorder<'a, P> {
         outer: Stages,
         forces: impl Fn(usize) -> Stages,
     ) -> Result<()> {
+        debug_assert!(!self.forces_alone, "a film has no history of the contact forces alone");
         let count = self.samples(h);
         let (mut q_at, mut v_at) = (vec![0.0; q.len()], vec![0.0; q.len()]);
         for sample in 1..=count {

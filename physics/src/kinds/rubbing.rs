@@ -49,14 +49,14 @@ pub(super) struct Rubbing<'a> {
 /// Motion along the surfaces, and the energy that friction took.
 pub(super) struct Rubbed {
     pub(super) sideways: Sideways,
-    /// In both contacts, J.
-    pub(super) dissipated: [f64; 2],
+    /// In both contacts, J; `None` without friction.
+    pub(super) dissipated: Option<[f64; 2]>,
 }
 
 impl Rubbed {
-    /// Energy that friction dissipates, J.
-    pub(super) fn friction_work(&self) -> f64 {
-        self.dissipated.iter().sum()
+    /// Energy that friction dissipates, J; `None` without friction.
+    pub(super) fn friction_work(&self) -> Option<f64> {
+        self.dissipated.map(|dissipated| dissipated.iter().sum())
     }
 }
 
@@ -88,14 +88,14 @@ impl Rubbing<'_> {
         let along = self.outer.speed * self.outer.angle.sin();
         let spins = [self.outer.turning.spin, self.inner.map_or(0.0, |inner| inner.turning.spin)];
         let slid = match frictions.iter().any(|friction| *friction > 0.0) {
-            true => self.slide([outer, inner], along, spins, frictions, result)?,
-            false => Slid::default(),
+            true => Some(self.slide([outer, inner], along, spins, frictions, result)?),
+            false => None,
         };
-        let [at_outer, at_inner] = slid.impulse;
-        // forces along x on the outer body's lower and the inner body's upper side
-        let (pushed, turned) = match self.struck {
-            StruckSurface::OtherBody => (at_outer, at_outer),
-            _ => (0.0 - at_inner, 0.0 - at_inner),
+        let [at_outer, at_inner] = slid.map_or([0.0; 2], |slid| slid.impulse);
+        // impulse along x on the inner body's upper side
+        let pushed = match self.struck {
+            StruckSurface::OtherBody => at_outer,
+            _ => 0.0 - at_inner,
         };
         let per_mass = |body: Option<TurningBody>| body.map_or(0.0, |body| 1.0 / body.mass);
         let per_inertia = |body: Option<TurningBody>| body.map_or(0.0, |body| body.arm / body.inertia);
@@ -104,9 +104,9 @@ impl Rubbing<'_> {
                 outer_tangential_velocity_final: along - at_outer * per_mass(outer),
                 inner_tangential_velocity_final: self.inner.map(|_| pushed * per_mass(inner)),
                 outer_spin_final: spins[0] + at_outer * per_inertia(outer),
-                inner_spin_final: self.inner.map(|_| spins[1] + turned * per_inertia(inner)),
+                inner_spin_final: self.inner.map(|_| spins[1] + pushed * per_inertia(inner)),
             },
-            dissipated: slid.dissipated,
+            dissipated: slid.map(|slid| slid.dissipated),
         })
     }
 

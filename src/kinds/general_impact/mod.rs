@@ -43,7 +43,7 @@ impl super::Kind for Kind {
             .all(|shape| matches!(shape, Shape::Sphere { .. }));
         let elastic = setup.materials().iter().all(|material| material.relaxation.is_empty());
         let single = setup.series.is_none() && setup.outer.is_centred() && body.damping_ratio == 0.0;
-        spheres && elastic && !yields(setup) && single
+        spheres && elastic && !yields(setup) && single && !setup.rubs() && !setup.spins()
     }
 
     fn closed_forms(&self, scene: &Scene) -> Result<Vec<ClosedForm>> {

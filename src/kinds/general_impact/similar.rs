@@ -25,11 +25,16 @@ pub(super) fn stratum(setup: &GeneralImpact) -> Result<&'static str, String> {
         .iter()
         .all(|material| material.relaxation.is_empty() && material.yield_strength.is_none());
     let uniform = body.materials.all().len() == 1;
-    let single = uniform && setup.series.is_none() && setup.outer.is_centred() && body.damping_ratio == 0.0;
+    let single = uniform
+        && !setup.rubs()
+        && !setup.spins()
+        && setup.series.is_none()
+        && setup.outer.is_centred()
+        && body.damping_ratio == 0.0;
     match spheres && elastic && single {
         true => Ok("body"),
         false => {
-            Err("the validation base has single impacts of elastic spheres on undamped bodies of one material only".into())
+            Err("the validation base has single impacts of elastic spheres without friction on undamped bodies of one material only".into())
         }
     }
 }

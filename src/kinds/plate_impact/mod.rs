@@ -39,7 +39,8 @@ impl super::Kind for Kind {
         let Ok(setup) = scene.plate_impact() else { return false };
         let spheres =
             [&setup.outer.shape, &setup.inner.shape].iter().all(|s| matches!(s, Shape::Sphere { .. }));
-        let dry = setup.fluid.is_none() && setup.plate.damping_ratio == 0.0 && setup.friction == 0.0;
+        let dry =
+            setup.fluid.is_none() && setup.plate.damping_ratio == 0.0 && !setup.rubs() && !setup.spins();
         let elastic = !setup.relaxes() && !setup.yields() && setup.series.is_none();
         spheres && dry && elastic && scene.reference.geometry == Geometry::Axisymmetric
     }

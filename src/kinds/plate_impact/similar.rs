@@ -22,7 +22,7 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
     if !setup.outer.is_centred() && setup.plate.edge != Edge::Clamped {
         return Err("the validation base has off-centre impacts on clamped plates only".into());
     }
-    if setup.outer.angle != 0.0 || setup.outer.turning.spin != 0.0 || setup.inner.turning.spin != 0.0 {
+    if setup.outer.angle != 0.0 || setup.spins() {
         return Err("the validation base has no oblique impacts and no spin".into());
     }
     let is_drawn =

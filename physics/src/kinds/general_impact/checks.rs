@@ -5,6 +5,7 @@ use crate::kinds::consistency::{
     ENERGY_SLACK, FORCE_FLOOR, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance,
     momentum_balance, not_negative, peak,
 };
+use crate::kinds::rubbing::moves_along;
 use crate::result::{History, Outcome, Statement, Summary, Table};
 
 /// The bodies that have a contact of their own, as names begin.
@@ -133,7 +134,8 @@ pub(super) fn shown(setup: &GeneralImpact, history: &History) -> Table {
     let mass = setup.outer.shape.mass(&setup.outer.material);
     let efficiency =
         |(inner, velocity): (f64, f64)| inner * velocity.powi(2) / (mass * setup.outer.speed.powi(2));
-    let is_mounted = setup.outer.shape.is_mounted();
-    set("efficiency".into(), setup.inner_mass().zip(inner).filter(|_| !is_mounted).map(efficiency));
+    // the motion along the surfaces is no curve
+    let is_known = !setup.outer.shape.is_mounted() && !moves_along(&setup.outer, setup.inner.as_ref());
+    set("efficiency".into(), setup.inner_mass().zip(inner).filter(|_| is_known).map(efficiency));
     table
 }

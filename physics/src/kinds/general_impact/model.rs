@@ -315,8 +315,10 @@ impl ContactModel {
         {
             warnings.push("motion along the surfaces is omitted by the reduced model".into());
         }
-        if self.setup.rubs() && self.memory.is_some() {
-            warnings.push("friction is omitted by the reduced model where bodies yield or relax".into());
+        if self.setup.rubs() && (self.memory.is_some() || self.setup.body().is_some()) {
+            warnings.push(
+                "friction along the surfaces is omitted by the reduced model: it only stiffens the contact of unlike materials".into(),
+            );
         }
         warnings.extend(is_cut.then(|| CUT.to_owned()));
         let transmitted = self.setup.inner_mass().map(|mass| 0.5 * mass * result.velocity[1].powi(2));
@@ -344,7 +346,7 @@ impl ContactModel {
                 share: transmitted.map(|energy| energy / supplied.taken),
             }),
             losses: self.memory.is_some().then_some(result.losses),
-            friction_work: rubbed.as_ref().map(Rubbed::friction_work),
+            friction_work: rubbed.as_ref().and_then(Rubbed::friction_work),
             sideways: rubbed.map(|rubbed| rubbed.sideways),
             warnings,
             ..Summary::of_reduced(&self.scene, Model::C, system.modes, table)

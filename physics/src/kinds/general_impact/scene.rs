@@ -14,6 +14,7 @@ use crate::scene::grammar::{
 };
 use crate::scene::material::material;
 use crate::scene::quantity::Dimension;
+use crate::scene::read::refused;
 use crate::scene::values::{Node, Values};
 use crate::scene::{
     Alias, Edge, FileFault, Geometry, Inner, Language, Outer, Plate, ReferenceSettings, Scene, Series, Setup,
@@ -67,13 +68,35 @@ impl GeneralImpact {
         Cow::Owned(Self { outer, ..self.clone() })
     }
 
-    /// The same with every body's friction stated as its own, which identifies the scene.
-    fn stating_friction(mut self) -> Self {
+    /// The same with every body's friction stated as its own, which identifies the scene. Two bodies that meet have one.
+    fn stating_friction(mut self) -> Result<Self> {
+        let outer = &mut self.outer.turning;
+        if let (None, Some(inner)) = (&self.struck, &mut self.inner) {
+            let inner = &mut inner.turning;
+            if let (Some(first), Some(second)) = (outer.own_friction, inner.own_friction)
+                && first != second
+            {
+                return Err(refused(
+                    &format!(
+                        "`outer.friction` is {first}, but `inner.friction` is {second}: the bodies have one contact with one friction"
+                    ),
+                    "remove one of them",
+                ));
+            }
+            let friction = outer.own_friction.or(inner.own_friction).unwrap_or(outer.friction);
+            (outer.friction, inner.friction) = (friction, friction);
+        }
         let inner = self.inner.as_mut().map(|inner| &mut inner.turning);
         for turning in [Some(&mut self.outer.turning), inner].into_iter().flatten() {
             turning.own_friction = Some(turning.friction).filter(|friction| *friction > 0.0);
         }
-        self
+        Ok(self)
+    }
+
+    /// Whether a body turns before the impact.
+    pub fn spins(&self) -> bool {
+        let inner = self.inner.as_ref().map_or(0.0, |inner| inner.turning.spin);
+        self.outer.turning.spin != 0.0 || inner != 0.0
     }
 
     /// Whether the moments of inertia of all bodies are known.
@@ -328,7 +351,7 @@ impl Language for super::Kind {
         let inner = inner_table.map(|inner| body_reading::inner(&inner, materials, friction)).transpose()?;
         let outer = body_reading::outer(&outer_table, materials, friction)?;
         let series = body_reading::series(root)?;
-        let setup = GeneralImpact { outer, struck, inner, series }.stating_friction();
+        let setup = GeneralImpact { outer, struck, inner, series }.stating_friction()?;
         let settings = root.optional_table("reference")?;
         let elements = settings
             .map_or(Ok(DEFAULT_ELEMENTS), |s| s.number_or("elements_per_contact_radius", DEFAULT_ELEMENTS))?;

@@ -126,7 +126,7 @@ impl Bodies for GeneralImpact {
             },
             Rule {
                 fields: vec!["outer.spin", "inner.spin", "series"],
-                holds: self.series.is_none() || !moves_along(&self.outer, self.inner.as_ref()),
+                holds: self.series.is_none() || !self.spins(),
                 message: "`spin`: bodies that turn strike another spot each time in a series".into(),
                 help: "remove `outer.spin` and `inner.spin`, or [series]",
             },

@@ -3,6 +3,7 @@
 use super::PlateImpact;
 use super::PlateQuantities;
 use crate::kinds::consistency::{FORCE_FLOOR, VELOCITY_SLACK, peak};
+use crate::kinds::rubbing::moves_along;
 use crate::result::{History, Table};
 
 /// Share of the samples, the last ones, over which the velocity of a body that flies freely does not change.
@@ -43,7 +44,10 @@ pub(super) fn shown(setup: &PlateImpact, history: &History) -> Table {
     let is_mounted = setup.outer.shape.is_mounted();
     let efficiency = |velocity: f64| mass_ratio * (velocity / setup.outer.speed).powi(2);
     // the motion along the plate is no curve
-    set("efficiency", inner.filter(|_| !is_mounted && setup.outer.angle == 0.0).map(efficiency));
+    set(
+        "efficiency",
+        inner.filter(|_| !is_mounted && !moves_along(&setup.outer, Some(&setup.inner))).map(efficiency),
+    );
     table
 }
 

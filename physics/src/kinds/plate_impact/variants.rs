@@ -86,9 +86,9 @@ impl<'a> Variants<'a> {
         continuum: &ContinuumSetup,
     ) -> Result<Self> {
         let setup = scene.plate_impact()?;
-        if !setup.outer.is_centred() {
+        if !setup.outer.is_centred() || setup.spins() {
             return Err(Error::Usage(
-                "an off-centre or oblique impact has no budget of the differences".into(),
+                "an off-centre or oblique impact, or one with spin, has no budget of the differences".into(),
             ));
         }
         let kirchhoff = kirchhoff::modes(&setup.plate, modes[0].max(patch_modes))?;

@@ -288,7 +288,9 @@ impl Reduced {
         }));
         let rubbed = self.rubbed(result)?;
         if setup.rubs() && (setup.outer.offset != 0.0 || self.memory.is_some()) {
-            warnings.push("friction is omitted by the reduced models; the reference includes it".into());
+            warnings.push(
+                "friction along the plate is omitted by the reduced models: it only stiffens the contact of unlike materials".into(),
+            );
         }
         warnings.extend(film_warning(result.losses.squeeze_film, system));
         warnings.extend(uncertain(result, tolerance));
@@ -322,7 +324,8 @@ impl Reduced {
         warnings.extend(unresolved(system, result, tolerance));
         warnings.extend(uncountable(result, tolerance));
         warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
-        if self.scene.plate_impact()?.outer.angle != 0.0 && self.rubbing()?.is_none() {
+        let given = self.scene.plate_impact()?;
+        if moves_along(&given.outer, Some(&given.inner)) && self.rubbing()?.is_none() {
             warnings.push(
                 "motion along the plate is omitted by the reduced models; the reference includes it".into(),
             );
@@ -371,7 +374,7 @@ impl Reduced {
                 || self.fluid.is_some()
                 || self.memory.is_some())
             .then_some(result.losses),
-            friction_work: rubbed.as_ref().map(Rubbed::friction_work),
+            friction_work: rubbed.as_ref().and_then(Rubbed::friction_work),
             sideways: rubbed.map(|rubbed| rubbed.sideways),
             warnings,
             choice: self.choice.clone(),

@@ -48,6 +48,11 @@ impl PlateImpact {
         Cow::Owned(Self { outer, ..self.clone() })
     }
 
+    /// Whether a body turns before the impact.
+    pub fn spins(&self) -> bool {
+        self.outer.turning.spin != 0.0 || self.inner.turning.spin != 0.0
+    }
+
     /// Whether a body rubs on the plate.
     pub fn rubs(&self) -> bool {
         self.outer.turning.friction > 0.0 || self.inner.turning.friction > 0.0

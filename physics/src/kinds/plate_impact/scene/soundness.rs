@@ -43,10 +43,9 @@ impl Bodies for PlateImpact {
             !(yields && !(body.relaxation.is_empty() && plate.material.relaxation.is_empty()))
         };
         let dry = self.fluid.is_none() && plate.damping_ratio == 0.0 && self.series.is_none();
-        let turn = self.outer.turning.has_inertia(&self.outer.shape)
+        let turn = (self.outer.shape.is_mounted() || self.outer.turning.has_inertia(&self.outer.shape))
             && self.inner.turning.has_inertia(&self.inner.shape);
-        let straight =
-            self.outer.is_centred() && self.outer.turning.spin == 0.0 && self.inner.turning.spin == 0.0;
+        let straight = self.outer.is_centred() && !self.spins();
         let (resistance, striking) = strongest_drive(&self.outer.shape);
         broken(vec![
             slenderness(plate),
@@ -73,7 +72,7 @@ impl Bodies for PlateImpact {
             },
             Rule {
                 fields: vec!["outer.spin", "inner.spin"],
-                holds: straight || (elastic && dry),
+                holds: !self.spins() || (elastic && dry),
                 message: "`spin` needs elastic bodies, no fluid, an undamped plate and one impact".into(),
                 help: "remove `outer.spin` and `inner.spin`, or fluid, damping, `hardening`, `relaxation`, `loss_factor` and series",
             },

@@ -104,7 +104,10 @@ fn an_invalid_distribution_is_reported_with_its_place() {
             ["no nominal value `inner.gap`", "`gap = ...` under `[inner]`"],
         ),
         ("\n\"reduced.modes\" = \"1 %\"", ["takes whole numbers", "leave it out"]),
-        ("\nfriction = \"1 %\"", ["only the reference uses it", "leave it out"]),
+        (
+            "\n\"reference.elements_per_contact_radius\" = \"1 %\"",
+            ["only the reference uses it", "leave it out"],
+        ),
         ("", ["names no input", "\"plate.thickness\" = \"1 %\""]),
     ] {
         let (said, line) = refused(table);
