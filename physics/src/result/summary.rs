@@ -134,7 +134,7 @@ pub struct Summary {
     /// contacts only, which amplify it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integration_error: Option<f64>,
-    /// Impacts beside the centre (references), at an angle or with spin, unless the run was cut during a contact.
+    /// Off-centre impacts (references), those at an angle or with spin, unless the run was cut during a contact.
     #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
     pub sideways: Option<Sideways>,
     /// Reduced models whose bodies rub: energy that friction dissipates, J.

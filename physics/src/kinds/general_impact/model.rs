@@ -3,6 +3,8 @@
 //! A rigid outer body and the inner one, if they meet, are solved in the frame of the inner one: errors are then relative to the closing
 //! speed, however small it is compared with their own speeds.
 
+mod sideways;
+
 use super::between::Between;
 use super::elastic::{self, ElasticBody};
 use super::scene::sphere_radius;
@@ -14,7 +16,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, integrate};
 use crate::error::{Error, Result};
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
-use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, moves_along};
+use crate::kinds::rubbing::{Rubbed, moves_along};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::Material;
 use crate::result::{
@@ -132,19 +134,6 @@ impl ContactModel {
         if result.stop == StopReason::Cut { table.cut() } else { table }
     }
 
-    /// The same with the efficiency of all motion: what the inner body has along the surfaces counts.
-    fn of_all_motion(&self, mut table: Table, rubbed: Option<&Rubbed>) -> Table {
-        let along = rubbed.and_then(|rubbed| rubbed.sideways.inner_tangential_velocity_final);
-        if let (Some(along), Some(Some(efficiency))) =
-            (along, table.value_mut("efficiency").map(Option::as_mut))
-        {
-            let [outer, inner] = self.system.masses;
-            *efficiency +=
-                inner * along * along * self.normal_share / (outer * self.setup.outer.speed.powi(2));
-        }
-        table
-    }
-
     /// What `of` makes of the impacts.
     fn with_impacts<R>(&self, of: impl FnOnce(Impacts) -> R) -> R {
         let values = |_: &System, result: &Integration| self.table(result);
@@ -174,38 +163,6 @@ impl ContactModel {
         summary.elastic_efficiency = self.with_impacts(|all| all.elastic_efficiency(&options));
         summary.elastic_limit = self.elastic_limit(&options);
         Ok((summary, memory, last.converged))
-    }
-
-    /// `options` that keep the contact forces as well, where friction moves bodies along the surfaces.
-    fn keeping_forces(&self, options: Options) -> Result<Options> {
-        let rubs = self.setup.rubs() && self.rubbing()?.is_some();
-        let sample_interval = rubs.then(|| self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
-        Ok(Options { sample_interval, forces_alone: rubs, ..options })
-    }
-
-    /// The bodies, if they move along the surfaces as the model has it: elastic ones on a wall, a plate, or each other.
-    fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
-        let GeneralImpact { outer, inner, struck, .. } = self.scene.general_impact()?;
-        let surface = match struck {
-            Some(Struck::Body(_)) => return Ok(None),
-            Some(Struck::Plate(plate)) => StruckSurface::plate(plate),
-            Some(Struck::Wall(_)) => StruckSurface::Held,
-            None => StruckSurface::OtherBody,
-        };
-        if self.memory.is_some() || !moves_along(outer, inner.as_ref()) {
-            return Ok(None);
-        }
-        let law = self.system.laws[0];
-        let contacts = [(law, [&outer.material, &self.faces[0]]); 2];
-        Ok(Some(Rubbing { outer, inner: inner.as_ref(), struck: surface, contacts }))
-    }
-
-    /// What the bodies do along the surfaces; `None` where they do not move so, or the run was cut.
-    fn rubbed(&self, result: &Integration) -> Result<Option<Rubbed>> {
-        match self.rubbing()? {
-            Some(rubbing) if result.stop != StopReason::Cut => rubbing.solve(result).map(Some),
-            _ => Ok(None),
-        }
     }
 
     /// `None` without yield strengths, and where a body relaxes or is clamped.

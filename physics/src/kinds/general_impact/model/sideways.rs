@@ -1,0 +1,57 @@
+//! What the bodies do along their surfaces, from the contact forces of the model.
+
+use super::ContactModel;
+use crate::dynamics::StopReason;
+use crate::dynamics::integration::{Integration, Options};
+use crate::error::Result;
+use crate::kinds::general_impact::{GeneralImpact, Struck};
+use crate::kinds::impacts::SAMPLES_PER_CONTACT;
+use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, moves_along};
+use crate::result::Table;
+
+impl ContactModel {
+    /// The same with the efficiency of all motion: what the inner body has along the surfaces counts.
+    pub(super) fn of_all_motion(&self, mut table: Table, rubbed: Option<&Rubbed>) -> Table {
+        let along = rubbed.and_then(|rubbed| rubbed.sideways.inner_tangential_velocity_final);
+        if let (Some(along), Some(Some(efficiency))) =
+            (along, table.value_mut("efficiency").map(Option::as_mut))
+        {
+            let [outer, inner] = self.system.masses;
+            *efficiency +=
+                inner * along * along * self.normal_share / (outer * self.setup.outer.speed.powi(2));
+        }
+        table
+    }
+
+    /// `options` that keep the contact forces as well, where friction moves bodies along the surfaces.
+    pub(super) fn keeping_forces(&self, options: Options) -> Result<Options> {
+        let rubs = self.setup.rubs() && self.rubbing()?.is_some();
+        let sample_interval = rubs.then(|| self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
+        Ok(Options { sample_interval, forces_alone: rubs, ..options })
+    }
+
+    /// The bodies, if they move along the surfaces as the model has it: elastic ones on a wall, a plate, or each other.
+    pub(super) fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
+        let GeneralImpact { outer, inner, struck, .. } = self.scene.general_impact()?;
+        let surface = match struck {
+            Some(Struck::Body(_)) => return Ok(None),
+            Some(Struck::Plate(plate)) => StruckSurface::plate(plate),
+            Some(Struck::Wall(_)) => StruckSurface::Held,
+            None => StruckSurface::OtherBody,
+        };
+        if self.memory.is_some() || !moves_along(outer, inner.as_ref()) {
+            return Ok(None);
+        }
+        let law = self.system.laws[0];
+        let contacts = [(law, [&outer.material, &self.faces[0]]); 2];
+        Ok(Some(Rubbing { outer, inner: inner.as_ref(), struck: surface, contacts }))
+    }
+
+    /// What the bodies do along the surfaces; `None` where they do not move so, or the run was cut.
+    pub(super) fn rubbed(&self, result: &Integration) -> Result<Option<Rubbed>> {
+        match self.rubbing()? {
+            Some(rubbing) if result.stop != StopReason::Cut => rubbing.solve(result).map(Some),
+            _ => Ok(None),
+        }
+    }
+}
