@@ -1,8 +1,8 @@
 //! Differences of a model from records, without the offset and drift that the instruments have.
 
-use crate::measured::noise::{Noise, groups, means, orthonormal};
 use crate::measured::screen::extremes;
 use crate::measured::{AlignedRecord, Channel, Filtered, Speed};
+use crate::numerics::stationary_noise::{Noise, groups, means, orthonormal};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 

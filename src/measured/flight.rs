@@ -1,7 +1,7 @@
 //! The free flight of a signal before and after the impact: offset, drift, velocities with their standard errors.
 
-use super::noise::{SignalFit, groups, means};
 use crate::numerics::least_squares::fit;
+use crate::numerics::stationary_noise::{SignalFit, groups, means};
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 

@@ -3,12 +3,12 @@
 use super::align::{Alignment, ChannelCorrection, Speed};
 use super::finding::{Finding, FindingKind};
 use super::flight::{FlightErrors, FreeFlight, FreeFlightFit};
-use super::noise::NORMAL_95;
 use super::screen::{independent, resolution, roughness};
 use super::structure::{Disturbance, Hum};
 use crate::error::{Error, Result};
 use crate::format;
 use crate::kinds::Approach;
+use crate::numerics::stationary_noise::NORMAL_95;
 
 /// Standard errors from which on a drift counts as found, and what it makes up over the record, over the step of the impact.
 const SIGNIFICANT_DRIFT: f64 = 5.0;

@@ -12,7 +12,6 @@ mod filter;
 mod finding;
 mod flight;
 mod judge;
-pub mod noise;
 mod record;
 pub(crate) mod screen;
 mod shift;

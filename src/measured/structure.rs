@@ -2,7 +2,7 @@
 //! of an AC-coupled sensor, hum of the mains, a drift that is not constant.
 
 use super::flight::{FreeFlight, Grouped};
-use super::noise::{SignalFit, orthonormal};
+use crate::numerics::stationary_noise::{SignalFit, orthonormal};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 

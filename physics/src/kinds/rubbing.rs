@@ -1,9 +1,12 @@
 //! Bodies that strike obliquely or turn: their motion along the surfaces they touch, from the forces across them.
 
 use crate::contact::{Hertz, TangentialContact};
-use crate::dynamics::integration::Integration;
+use crate::dynamics::StopReason;
+use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::sliding::{Slid, Sliding, TurningBody};
+use crate::dynamics::system::System;
 use crate::error::{Error, Result};
+use crate::kinds::impacts::SAMPLES_PER_CONTACT;
 use crate::material::Material;
 use crate::result::Sideways;
 use crate::scene::{Inner, Outer, Plate, Shape, Turning};
@@ -77,18 +80,36 @@ pub(super) fn moves_along(outer: &Outer, inner: Option<&Inner>) -> bool {
 }
 
 impl Rubbing<'_> {
-    /// What they do under the contact forces that `result` has as its history.
+    /// Coefficients of friction of both contacts.
+    fn frictions(&self) -> [f64; 2] {
+        [self.outer.turning.friction, self.inner.map_or(0.0, |inner| inner.turning.friction)]
+    }
+
+    fn has_friction(&self) -> bool {
+        self.frictions().iter().any(|friction| *friction > 0.0)
+    }
+
+    /// `options` that keep the contact forces of `system` as well, where there is friction.
+    pub(super) fn keeping_forces(&self, system: &System, options: Options) -> Options {
+        let rubs = self.has_friction();
+        let sample_interval = rubs.then(|| system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
+        Options { sample_interval, forces_alone: rubs, ..options }
+    }
+
+    /// What they do under the contact forces that `result` has as its history; `None` of a run that was cut.
     ///
     /// # Errors
     /// [`Error::Internal`] without that history.
-    pub(super) fn solve(&self, result: &Integration) -> Result<Rubbed> {
-        let frictions = [self.outer.turning.friction, self.inner.map_or(0.0, |inner| inner.turning.friction)];
+    pub(super) fn solve(&self, result: &Integration) -> Result<Option<Rubbed>> {
+        if result.stop == StopReason::Cut {
+            return Ok(None);
+        }
         let outer = turning_body(&self.outer.shape, &self.outer.material, &self.outer.turning);
         let inner = self.inner.and_then(|inner| turning_body(&inner.shape, &inner.material, &inner.turning));
         let along = self.outer.speed * self.outer.angle.sin();
         let spins = [self.outer.turning.spin, self.inner.map_or(0.0, |inner| inner.turning.spin)];
-        let slid = match frictions.iter().any(|friction| *friction > 0.0) {
-            true => Some(self.slide([outer, inner], along, spins, frictions, result)?),
+        let slid = match self.has_friction() {
+            true => Some(self.slide([outer, inner], along, spins, result)?),
             false => None,
         };
         let [at_outer, at_inner] = slid.map_or([0.0; 2], |slid| slid.impulse);
@@ -99,7 +120,7 @@ impl Rubbing<'_> {
         };
         let per_mass = |body: Option<TurningBody>| body.map_or(0.0, |body| 1.0 / body.mass);
         let per_inertia = |body: Option<TurningBody>| body.map_or(0.0, |body| body.arm / body.inertia);
-        Ok(Rubbed {
+        Ok(Some(Rubbed {
             sideways: Sideways {
                 outer_tangential_velocity_final: along - at_outer * per_mass(outer),
                 inner_tangential_velocity_final: self.inner.map(|_| pushed * per_mass(inner)),
@@ -107,7 +128,7 @@ impl Rubbing<'_> {
                 inner_spin_final: self.inner.map(|_| spins[1] + pushed * per_inertia(inner)),
             },
             dissipated: slid.map(|slid| slid.dissipated),
-        })
+        }))
     }
 
     fn slide(
@@ -115,7 +136,6 @@ impl Rubbing<'_> {
         bodies: [Option<TurningBody>; 2],
         along: f64,
         spins: [f64; 2],
-        frictions: [f64; 2],
         result: &Integration,
     ) -> Result<Slid> {
         let history = result.history.as_ref();
@@ -132,6 +152,7 @@ impl Rubbing<'_> {
                 ([[first + push + turn, push - turn], [push - turn, second + push + turn]], surfaces)
             }
         };
+        let frictions = self.frictions();
         let contact = |i: usize| {
             let (law, materials) = self.contacts[i];
             let peak = result.contacts[i].force_peak;

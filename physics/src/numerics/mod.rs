@@ -9,4 +9,5 @@ pub mod least_squares;
 pub mod quadrature;
 pub(crate) mod root;
 pub(crate) mod stages;
+pub mod stationary_noise;
 pub(crate) mod vectors;

@@ -1,11 +1,9 @@
 //! What the bodies do along their surfaces, from the contact forces of the model.
 
 use super::ContactModel;
-use crate::dynamics::StopReason;
 use crate::dynamics::integration::{Integration, Options};
 use crate::error::Result;
 use crate::kinds::general_impact::{GeneralImpact, Struck};
-use crate::kinds::impacts::SAMPLES_PER_CONTACT;
 use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, moves_along};
 use crate::result::Table;
 
@@ -25,9 +23,7 @@ impl ContactModel {
 
     /// `options` that keep the contact forces as well, where friction moves bodies along the surfaces.
     pub(super) fn keeping_forces(&self, options: Options) -> Result<Options> {
-        let rubs = self.setup.rubs() && self.rubbing()?.is_some();
-        let sample_interval = rubs.then(|| self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
-        Ok(Options { sample_interval, forces_alone: rubs, ..options })
+        Ok(self.rubbing()?.map_or(options, |rubbing| rubbing.keeping_forces(&self.system, options)))
     }
 
     /// The bodies, if they move along the surfaces as the model has it: elastic ones on a wall, a plate, or each other.
@@ -49,9 +45,6 @@ impl ContactModel {
 
     /// What the bodies do along the surfaces; `None` where they do not move so, or the run was cut.
     pub(super) fn rubbed(&self, result: &Integration) -> Result<Option<Rubbed>> {
-        match self.rubbing()? {
-            Some(rubbing) if result.stop != StopReason::Cut => rubbing.solve(result).map(Some),
-            _ => Ok(None),
-        }
+        self.rubbing()?.map_or(Ok(None), |rubbing| rubbing.solve(result))
     }
 }

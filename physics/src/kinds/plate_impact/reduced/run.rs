@@ -88,9 +88,7 @@ impl Reduced {
 
     /// `options` that keep the contact forces as well, where friction moves bodies along the plate.
     fn keeping_forces(&self, options: Options) -> Result<Options> {
-        let rubs = self.scene.plate_impact()?.rubs() && self.rubbing()?.is_some();
-        let sample_interval = rubs.then(|| self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
-        Ok(Options { sample_interval, forces_alone: rubs, ..options })
+        Ok(self.rubbing()?.map_or(options, |rubbing| rubbing.keeping_forces(&self.system, options)))
     }
 
     /// The bodies, if they move along the plate as the models have it: at its centre.
@@ -114,10 +112,7 @@ impl Reduced {
 
     /// What the bodies do along the plate, of a `result` with forces; `None` where they do not move so, or the run was cut.
     fn rubbed(&self, result: &Integration) -> Result<Option<Rubbed>> {
-        match self.rubbing()? {
-            Some(rubbing) if result.stop != StopReason::Cut => rubbing.solve(result).map(Some),
-            _ => Ok(None),
-        }
+        self.rubbing()?.map_or(Ok(None), |rubbing| rubbing.solve(result))
     }
 
     /// `None` without yield strengths, and where bodies relax or bend before they strike.

@@ -5,7 +5,8 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// Orders of the low-pass filters (Butterworth) that may have limited the noise: from a single pole to a steep filter.
+/// Orders of the low-pass filters (Butterworth) that may have limited the noise: from a single pole to a steep filter. One, or even: the poles are
+/// mirrored in pairs.
 const ORDERS: [u8; 3] = [1, 2, 6];
 /// Their -3 dB frequencies over the instrument's bandwidth: lowest, highest, number.
 const CORNERS: (f64, f64, usize) = (0.05, 4.0, 12);
@@ -53,10 +54,10 @@ impl Filter {
 
     /// Correlation of white noise behind it at `time`. Shape (times, times).
     fn correlation(&self, time: &[f64]) -> DMatrix<f64> {
-        // residues of the spectrum 1/(1 + (f/corner)^(2 order)) at its poles
+        // residues of the spectrum 1/(1 + (f/corner)^(2 order)) at its poles; mirrored ones have the same
         let order = usize::from(self.order);
         let pole = |k: usize| (PI * (2 * k + 1) as f64 / (2 * order) as f64).sin_cos();
-        let poles: Vec<(f64, f64)> = (0..order).map(pole).collect();
+        let poles: Vec<(f64, f64)> = (0..order.div_ceil(2)).map(pole).collect();
         let residue = |x: f64, (sine, cosine): &(f64, f64)| {
             let (wave, quarter) = (x * cosine).sin_cos();
             (-x * sine).exp() * (sine * quarter + cosine * wave)
