@@ -51,7 +51,7 @@ rust:
 wheel: setup
 	rm -rf target/wheels
 	$(VENV)/bin/maturin build --release --locked --quiet --interpreter $(PYTHON) --out target/wheels
-	@[ -x $(WHEEL)/bin/pytest ] || { $(PYTHON) -m venv $(WHEEL) && $(WHEEL)/bin/python -m pip install --quiet mypy numpy pytest xarray; }
+	@$(WHEEL)/bin/python -c 'import xdist' 2>/dev/null || { $(PYTHON) -m venv $(WHEEL) && $(WHEEL)/bin/python -m pip install --quiet mypy numpy pytest pytest-xdist xarray; }
 	$(WHEEL)/bin/python -m pip install --quiet --force-reinstall --no-deps target/wheels/*.whl
 
 python: setup wheel
@@ -63,7 +63,7 @@ python: setup wheel
 	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference validation
 	guide/generate target/release/impactcheck --check
 	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck IMPACTCHECK_PYTHON=$(or $(IMPACTCHECK_PYTHON),$(CURDIR)/$(TOOL)) \
-	    $(WHEEL)/bin/python -m pytest -q python
+	    $(WHEEL)/bin/python -m pytest -q -n auto --dist worksteal python
 	$(WHEEL)/bin/python -m mypy.stubtest impactcheck._core
 
 # a live finite-element run on coarse meshes, and the gate on what it gives; the scene is the one whose coarse mesh is
@@ -120,6 +120,8 @@ evidence: setup wheel
 	# a random tenth of the scenes that predictions rest on
 	$(TOOL) validation/draw.py $(OUT)/validation/scenes
 	IMPACTCHECK_PYTHON=$(PYTHON) $(TOOL) validation/check.py $(OUT)/validation/scenes validation/base.jsonl
+	$(TOOL) -m pytest -q -n auto --dist worksteal -m evidence fem_reference
+	cargo test --release --workspace --lib --bins --tests -- --ignored
 	# flights of the sphere by another program
 	$(TOOL) -m fem_reference flights --out fem_reference/solutions/flights.json
 	for scene in $(PLATES); do $(PYTHON) -m fem_reference cost --out reports/reference-cost-$$scene.json \

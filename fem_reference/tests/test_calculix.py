@@ -103,6 +103,7 @@ def test_a_thin_plate_vibrates_as_in_kirchhoffs_theory(
 
 
 @needs_calculix
+@pytest.mark.evidence
 def test_a_coarse_impact_keeps_its_balances_and_agrees_with_explicit_elements(
     tmp_path: Path,
 ) -> None:

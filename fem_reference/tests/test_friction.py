@@ -120,7 +120,7 @@ def test_rough_contact_is_stiffer_as_much_as_a_punch_that_sticks() -> None:
         "inner__gap": 1e-3,
         "outer__speed": 0.02,
         "run__end_time": 4e-4,
-        "reference__elements_per_contact_radius": 8,
+        "reference__elements_per_contact_radius": 4,
     }
     ratio = peak(100.0, **scene).contacts[0].force_peak / peak(0.0, **scene).contacts[0].force_peak
     assert 1.0 + 0.5 * (math.log(3.0) ** 0.4 - 1.0) < ratio < math.log(3.0) ** 0.4

@@ -203,6 +203,7 @@ def test_the_first_frequency_is_one_that_the_contact_excites(tmp_path: Path) -> 
 
 
 @needs_calculix
+@pytest.mark.evidence
 def test_a_small_impact_keeps_its_balances_and_agrees_with_the_explicit_solver(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -45,6 +45,7 @@ def test_what_a_difference_may_be_has_its_parts() -> None:
     assert spins[0].data == pytest.approx(math.hypot(3.0, 0.0075 * 612.88))
 
 
+@pytest.mark.evidence
 def test_a_ball_rebounds_as_it_was_measured() -> None:
     """Where it slides, on the coarsest mesh there is: what the tables' last rows say."""
     found = rebound(50.0, 2.0)

@@ -192,7 +192,10 @@ def test_solid_bodies_relax_in_one_process() -> None:
         COMMANDS["solve"](scene, Namespace(**options))
 
 
-def test_maxwell_sphere_on_a_rigid_wall_hunter() -> None:
+@pytest.mark.parametrize(
+    ("elements", "within"), [(5, 0.01), pytest.param(10, 0.005, marks=pytest.mark.evidence)]
+)
+def test_maxwell_sphere_on_a_rigid_wall_hunter(elements: float, within: float) -> None:
     """1 - e = 4/9 T/tau to first order, T the duration of the elastic contact.
 
     Hunter 1960, J. Mech. Phys. Solids 8, 219. With half the elements 0.7 % are missing, not 0.3 %.
@@ -205,7 +208,7 @@ def test_maxwell_sphere_on_a_rigid_wall_hunter() -> None:
         "outer__speed": 0.02,
         "inner__gap": 1e-3,
         "run__end_time": 1.8e-4,
-        "reference__elements_per_contact_radius": 10,
+        "reference__elements_per_contact_radius": elements,
     }
     elastic = run_of(document(**changes), end_time=1.8e-4)
     duration = elastic.contacts[0].end
@@ -214,7 +217,7 @@ def test_maxwell_sphere_on_a_rigid_wall_hunter() -> None:
     terms = [{"ratio": 1.0 - 1e-6, "time": 100.0 * duration}]
     fluid = run_of(relaxing("outer", terms=terms, **changes), end_time=1.8e-4)
     lost = 1.0 - fluid.outer_velocity / elastic.outer_velocity
-    assert lost == pytest.approx(4.0 / 9.0 * 0.01, rel=0.005)
+    assert lost == pytest.approx(4.0 / 9.0 * 0.01, rel=within)
 
 
 def solid_run(scene_document: dict[str, Any], **options: Any) -> Run:
@@ -229,10 +232,10 @@ def solid_run(scene_document: dict[str, Any], **options: Any) -> Run:
 
 def test_solid_elements_lose_what_axisymmetric_ones_do(tmp_path: Path) -> None:
     """And a run that is cut off goes on from its checkpoint as if nothing had been."""
-    scene = relaxing("outer", "plate", plate__radius=0.012, run={"end_time": 4e-5})
+    scene = relaxing("outer", "plate", plate__radius=0.012, run={"end_time": 2e-5})
     scene["inner"]["radius"] = scene["outer"]["radius"] = 0.005
     scene["outer"]["speed"] = 2.0
-    flat = run_of(scene, end_time=4e-5)
+    flat = run_of(scene, end_time=2e-5)
     scene["reference"] = {"geometry": "solid", "elements_per_contact_radius": 2}
     whole = solid_run(scene)
     assert whole.energy_residual < 2e-5

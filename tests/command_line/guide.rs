@@ -182,8 +182,9 @@ fn every_command_runs_and_prints_what_the_guide_shows() {
             let output = run(line);
             commands += 1;
             written.push(line.to_owned());
-            // what is installed differs from machine to machine
-            if chosen.is_some() || line == "$ impactcheck doctor" {
+            // what is installed differs from machine to machine, and so may meshes
+            let is_slow = chosen.as_deref() == Some("slow") && !expected.is_empty();
+            if chosen.is_some() && !is_slow || line == "$ impactcheck doctor" {
                 written.extend(expected.into_iter().map(str::to_owned));
                 continue;
             }

@@ -221,15 +221,15 @@ impl DentedContact {
 
     /// Both surfaces if virgin, at the square `w` of the weaker one's overload, and the shear stress in Pa that they bear.
     fn virgin(&self, w: f64) -> ([Option<Flattened>; 2], f64) {
-        let at = |of_weaker: Flattened| {
+        let other = 1 - self.weaker;
+        let at = |of_weaker: Flattened, near: f64| {
             let shear = of_weaker.pressure * of_weaker.shears();
-            let other = 1 - self.weaker;
             let mut now = [Some(of_weaker); 2];
-            now[other] = self.surfaces[other].map(|surface| surface.law.sheared(shear, w, self.near[other]));
+            now[other] = self.surfaces[other].map(|surface| surface.law.sheared(shear, w, near));
             (now, shear)
         };
         let law = self.weaker_law();
-        let alone = at(law.flattened(w));
+        let alone = at(law.flattened(w), self.near[other]);
         let (0, [Some(body), Some(plate)]) = (self.weaker, alone.0) else { return alone };
         if body.approach <= 1.0 {
             return alone;
@@ -237,9 +237,11 @@ impl DentedContact {
         // the sphere slopes by what both surfaces are flattened: the more it does the less pressure flattens the plate; one secant is enough,
         // since a twentieth of the slope is a hundredth of the pressure
         let sloping = body.flattening + plate.flattening;
-        let less = at(law.flattened_at(w, sloping)).0[1].map_or(0.0, |plate| plate.flattening);
-        let plate = plate.flattening.powi(2) / (2.0 * plate.flattening - less);
-        at(law.flattened_at(w, body.flattening + plate))
+        let less =
+            at(law.flattened_at(w, sloping), plate.approach).0[1].map_or(0.0, |plate| plate.flattening);
+        let flattening = plate.flattening.powi(2) / (2.0 * plate.flattening - less);
+        let near = plate.approach * (flattening / plate.flattening).powi(2);
+        at(law.flattened_at(w, body.flattening + flattening), near)
     }
 
     /// The contact at the square `w` of the overload that the weaker surface would have if virgin.

@@ -13,7 +13,7 @@
 //! The curves of l are those of static finite elements: a rigid paraboloid on a half-space and a sphere on a rigid flat, small strains,
 //! nu = 0.3, l from 1 to 31, a/R up to 0.2. They hold the mean pressure within 2 %, the rebound within 1.5 %. There is no hardening.
 
-use crate::numerics::root::{root, root_near};
+use crate::numerics::root::{newton_near, root};
 use std::f64::consts::PI;
 
 /// Mean pressure of full plasticity over the yield strength, and the power of the overload with which the pressure tends to it.
@@ -45,9 +45,6 @@ const ENERGY: [f64; 3] = [0.3 * PI * PI, 9.0 / 32.0 * PI * PI, 8.0 / 3.0];
 /// Largest shear stress on the axis over the mean pressure, of Hertz's distribution and an even one, nu = 0.3 (Johnson 1985, sections 4.2
 /// and 3.4).
 const SHEAR: [f64; 2] = [0.465, 0.332];
-
-/// Power of the square of the overload with which that stress grows, about: 1/2 of Hertz's contact, less of one that yields.
-const SHEARED_POWER: f64 = 0.3;
 
 /// Surface of a material that yields.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -146,10 +143,7 @@ impl ElasticPlastic {
             hardness: 1.5 * FULL_PLASTICITY / factor,
             strongest: f64::INFINITY,
         };
-        let strongest = largest(|w| {
-            let state = law.flattened(w);
-            state.pressure * state.shears()
-        });
+        let strongest = largest(|w| law.bears(w)[0]);
         Self { strongest, ..law }
     }
 
@@ -176,19 +170,12 @@ impl ElasticPlastic {
     pub fn flattened_at(&self, w: f64, slope: f64) -> Flattened {
         let overload = w.sqrt();
         let flattening = self.onset * overload;
-        let elastic = self.onset_pressure() * overload;
+        let [flat, pressure, evenness] = self.pressures(overload, slope);
+        let state = Flattened { approach: w, pressure, flattening, evenness, ..Flattened::NONE };
         if w <= 1.0 {
-            return Flattened { approach: w, pressure: elastic, flattening, ..Flattened::NONE };
+            return state;
         }
         let beyond = overload - 1.0;
-        // begins with the slope of Hertz's law
-        let rise = self.hardness - 1.0;
-        let flat =
-            self.onset_pressure() * (self.hardness - rise * (1.0 + beyond / (TENDS * rise)).powf(-TENDS));
-        let evenness = -(-EVENS * beyond).exp_m1();
-        // what flows is held back less; at first yield nothing does
-        let pressure = flat * if self.is_sphere { falls_away(overload, evenness * slope) } else { 1.0 };
-        let state = Flattened { approach: w, pressure, flattening, evenness, ..Flattened::NONE };
         let [size, power, start] = LOSS;
         let loss = size * beyond.powf(1.0 + power) / (beyond + start);
         Flattened {
@@ -199,6 +186,40 @@ impl ElasticPlastic {
         }
     }
 
+    /// Mean pressure in Pa at an `overload` where the contact radius is `slope` of the tip's: on a half-space, and on this surface; and the
+    /// evenness.
+    fn pressures(&self, overload: f64, slope: f64) -> [f64; 3] {
+        let elastic = self.onset_pressure() * overload;
+        if overload <= 1.0 {
+            return [elastic, elastic, 0.0];
+        }
+        let beyond = overload - 1.0;
+        // begins with the slope of Hertz's law
+        let rise = self.hardness - 1.0;
+        let flat =
+            self.onset_pressure() * (self.hardness - rise * (1.0 + beyond / (TENDS * rise)).powf(-TENDS));
+        let evenness = -(-EVENS * beyond).exp_m1();
+        // what flows is held back less; at first yield nothing does
+        [flat, flat * if self.is_sphere { falls_away(overload, evenness * slope) } else { 1.0 }, evenness]
+    }
+
+    /// Shear stress in Pa that the surface bears at the square `w` of its overload, from 1 on, and the power of `w` with which it grows there.
+    fn bears(&self, w: f64) -> [f64; 2] {
+        let overload = w.sqrt();
+        let slope = self.onset * overload;
+        let [flat, pressure, evenness] = self.pressures(overload, slope);
+        let shears = Flattened { evenness, ..Flattened::NONE }.shears();
+        let evens = EVENS * (1.0 - evenness);
+        let rise = self.hardness - 1.0;
+        let left = self.hardness - flat / self.onset_pressure();
+        let mut growth = self.onset_pressure() * left / (rise + (overload - 1.0) / TENDS) / flat
+            + evens * (SHEAR[1] - SHEAR[0]) / shears;
+        if self.is_sphere {
+            growth += falling_away(overload, [evenness * slope, evens * slope + evenness * self.onset]);
+        }
+        [pressure * shears, 0.5 * overload * growth]
+    }
+
     /// The surface where the pressure strives to shear it by `shear` Pa, looked for `near` that square of the overload; at `w` if it
     /// can bear no more.
     pub fn sheared(&self, shear: f64, w: f64, near: f64) -> Flattened {
@@ -206,16 +227,12 @@ impl ElasticPlastic {
         if elastic <= 1.0 {
             return self.flattened(elastic);
         }
-        let bears = |w: f64| {
-            let state = self.flattened(w);
-            state.pressure * state.shears()
-        };
         let ends = [1.0, self.strongest];
-        let found = root_near(bears, shear, near.clamp(ends[0], ends[1]), SHEARED_POWER);
+        let found = newton_near(|w| self.bears(w), shear, near.clamp(ends[0], ends[1]));
         if let Some(found) = found.filter(|w| (ends[0]..=ends[1]).contains(w)) {
             return self.flattened(found);
         }
-        let error = |w: f64| bears(w) - shear;
+        let error = |w: f64| self.bears(w)[0] - shear;
         let values = ends.map(error);
         if values[1] <= 0.0 {
             self.flattened(w.max(ends[1]))
@@ -229,6 +246,14 @@ impl ElasticPlastic {
 fn falls_away(overload: f64, slope: f64) -> f64 {
     let [scale, power] = SLOPING;
     (slope.min(STEEPEST) * (-(overload / scale).powf(power)).exp_m1()).exp()
+}
+
+/// Derivative of its logarithm by the overload; the `slope` comes with its own.
+fn falling_away(overload: f64, [slope, steepens]: [f64; 2]) -> f64 {
+    let [scale, power] = SLOPING;
+    let weight = (overload / scale).powf(power);
+    let steepens = if slope < STEEPEST { steepens } else { 0.0 };
+    steepens * (-weight).exp_m1() - slope.min(STEEPEST) * (-weight).exp() * power * weight / overload
 }
 
 #[cfg(test)]

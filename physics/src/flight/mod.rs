@@ -28,7 +28,7 @@ pub use judged::{Judged, Landing, LaunchDeviation, judge, least_shift, map_of_la
 pub use landscape::{Landscape, Saddle};
 pub use run::{Ending, Flight, FlightContact, fly};
 pub use spring::Spring;
-pub use vibration::{Thresholds, thresholds};
+pub use vibration::{Thresholds, thresholds, thresholds_within};
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};

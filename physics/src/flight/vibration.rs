@@ -4,9 +4,10 @@ use super::landscape::Landscape;
 use super::run::{Ending, MotionMode, MotionRequest, moved};
 use super::{Excitation, Setup, Vector, Wave};
 
-/// Relative steps of the amplitude in which a shift is looked for, and halvings of the step in which it is found.
+/// Relative steps of the amplitude in which a shift is looked for.
 const STEP: f64 = 0.05;
-const HALVINGS: u32 = 24;
+/// Relative error with which it is found.
+const CLOSE: f64 = 3e-9;
 /// Largest amplitude looked at over the one below which nothing can happen.
 const HARDEST: f64 = 1e4;
 
@@ -24,10 +25,21 @@ pub struct Thresholds {
 
 /// The thresholds of a `wave` of base acceleration along `direction` (of length 1).
 pub fn thresholds(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: Vector) -> Thresholds {
+    thresholds_within(setup, landscape, wave, direction, CLOSE)
+}
+
+/// The same, that of a shift with a relative `error`.
+pub fn thresholds_within(
+    setup: &Setup,
+    landscape: &Landscape,
+    wave: &Wave,
+    direction: Vector,
+    error: f64,
+) -> Thresholds {
     let unseats = static_limit(setup, landscape, wave, direction);
     let energy_bound = landscape.least_speed(setup.mass) / wave.impulse();
     let shifts = unseats.and_then(|unseats| {
-        least(unseats.max(energy_bound), |amplitude| {
+        least(unseats.max(energy_bound), error, |amplitude| {
             shaken_over(setup, landscape, wave, direction, amplitude)
         })
     });
@@ -49,8 +61,8 @@ fn shaken_over(setup: &Setup, landscape: &Landscape, wave: &Wave, direction: Vec
     moved(&setup, landscape, state, mode, request).ending == Ending::Passed
 }
 
-/// Least amplitude from `low` on for which something `happens`, by steps and halvings.
-fn least(low: f64, happens: impl Fn(f64) -> bool) -> Option<f64> {
+/// Least amplitude from `low` on for which something `happens`, with a relative `error`: by steps and halvings.
+fn least(low: f64, error: f64, happens: impl Fn(f64) -> bool) -> Option<f64> {
     let (mut below, mut above) = (low, low);
     while !happens(above) {
         if above > HARDEST * low {
@@ -58,7 +70,7 @@ fn least(low: f64, happens: impl Fn(f64) -> bool) -> Option<f64> {
         }
         (below, above) = (above, above * (1.0 + STEP));
     }
-    for _ in 0..HALVINGS {
+    while above - below > error * above {
         let middle = 0.5 * (below + above);
         if happens(middle) { above = middle } else { below = middle }
     }

@@ -24,7 +24,7 @@ pub(crate) fn first_fall(
     None
 }
 
-/// Secants of [`root_near`] at most, and the step, relative, from which on the next one ends at rounding.
+/// Secants of [`root_near`] and steps of [`newton_near`] at most, and the step, relative, from which on the next one ends at rounding.
 const SECANTS: usize = 12;
 const LAST_STEP: f64 = 1e-9;
 /// Last step of [`root_from`], relative; the error that is left is about its square.
@@ -47,6 +47,24 @@ pub(crate) fn root_near(f: impl Fn(f64) -> f64, value: f64, near: f64, power: f6
         slope = (miss - before) / step;
         if !slope.is_finite() || slope <= 0.0 {
             return None;
+        }
+    }
+    None
+}
+
+/// Where a positive function of a positive argument is `value`: by Newton's method for the logarithms from `near` on. `f` gives the function
+/// and its power there, d ln f/d ln x. `None` if it does not settle.
+pub(crate) fn newton_near(f: impl Fn(f64) -> [f64; 2], value: f64, near: f64) -> Option<f64> {
+    let mut x = near;
+    for _ in 0..SECANTS {
+        let [found, power] = f(x);
+        let step = (value / found).ln() / power;
+        if !step.is_finite() || power <= 0.0 {
+            return None;
+        }
+        x *= step.exp();
+        if step.abs() <= LAST_STEP {
+            return Some(x);
         }
     }
     None

@@ -1,6 +1,6 @@
 //! Thresholds of vibration over the frequency, with the limits of statics and energy.
 
-use crate::flight::{Landscape, Setup, Thresholds, thresholds};
+use crate::flight::{Landscape, Setup, Thresholds, thresholds_within};
 use crate::plot::{ChartPanel, Series, chart};
 use crate::scene::Vibration;
 use rayon::prelude::*;
@@ -8,6 +8,8 @@ use rayon::prelude::*;
 /// Frequencies of the chart, the middle one the scene's, and how far it goes to both sides of the scene's.
 const COUNT: usize = 21;
 const REACH: f64 = 6.0;
+/// Relative error that no chart shows.
+const ERROR: f64 = 1e-3;
 
 /// The chart as a stand-alone SVG; `None` of a record, which has no frequency, and where nothing unseats.
 pub(crate) fn vibration_chart(setup: &Setup, landscape: &Landscape, vibration: &Vibration) -> Option<String> {
@@ -16,7 +18,8 @@ pub(crate) fn vibration_chart(setup: &Setup, landscape: &Landscape, vibration: &
     let found: Vec<(f64, Thresholds)> = (0..COUNT)
         .into_par_iter()
         .map(|k| {
-            (at(k), thresholds(setup, landscape, &vibration.wave.at_frequency(at(k)), vibration.direction))
+            let wave = vibration.wave.at_frequency(at(k));
+            (at(k), thresholds_within(setup, landscape, &wave, vibration.direction, ERROR))
         })
         .collect();
     found.iter().find_map(|(_, found)| found.unseats)?;
