@@ -31,17 +31,22 @@ PLATES := $(filter-out seal-seat-%,$(SCENES))
 ASIDE := scenes/validation/off-centre.toml
 SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-light polymer-plate supported-plate titanium-sapphire)
 
-.PHONY: test setup rust wheel python live gate report solutions validation evidence
+.PHONY: test setup lint rust wheel python live gate report solutions validation evidence
 
-test: setup rust python live gate
+# packages are fetched while the compiler works
+test:
+	@$(MAKE) --no-print-directory -j2 setup lint
+	@$(MAKE) --no-print-directory rust python live gate
 	@echo "all checks passed$(if $(UNCHECKED), but one: pages in a browser need Chromium (as root: apt-get install chromium))"
 
 setup:
 	@.ci/setup
 
-rust:
+lint:
 	cargo fmt --all --check
 	cargo clippy --release --workspace --all-targets -- -D warnings
+
+rust: lint
 	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --workspace --no-fail-fast $(if $(UNCHECKED),-E 'not test(/^$(UNCHECKED)/)'); \
 	else cargo test --release --workspace $(if $(UNCHECKED),-- --skip $(UNCHECKED)); fi
 	cargo test --release --workspace --doc
