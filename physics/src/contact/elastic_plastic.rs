@@ -278,6 +278,17 @@ mod tests {
         assert_relative_eq!(1.5 * steel(600e6).onset_pressure() / 600e6, 1.6, max_relative = 0.02);
     }
 
+    #[test]
+    fn the_power_of_the_shear_stress_is_its_derivative() {
+        for is_sphere in [false, true] {
+            let law = ElasticPlastic::new(MODULUS, 600e6, 0.3, is_sphere);
+            for w in [1.5, 10.0, 300.0, 2e4] {
+                let [below, above] = [-1e-6, 1e-6].map(|step: f64| law.bears(w * step.exp())[0].ln());
+                assert_relative_eq!(law.bears(w)[1], 0.5e6 * (above - below), epsilon = 1e-8);
+            }
+        }
+    }
+
     /// On the axis sigma_r - sigma_z = Y: a stress along the surface takes its part of Y, a pressure gives it, and neither adds to one before.
     #[test]
     fn a_surface_that_is_pulled_yields_earlier_by_the_stress() {
