@@ -126,7 +126,7 @@ evidence: setup wheel
 	$(TOOL) validation/draw.py $(OUT)/validation/scenes
 	IMPACTCHECK_PYTHON=$(PYTHON) $(TOOL) validation/check.py $(OUT)/validation/scenes validation/base.jsonl
 	$(TOOL) -m pytest -q -n auto --dist worksteal -m evidence fem_reference
-	cargo test --release --workspace --lib --bins --tests -- --ignored
+	cargo nextest run --release --workspace --ignore-default-filter -E 'not default()'
 	# flights of the sphere by another program
 	$(TOOL) -m fem_reference flights --out fem_reference/solutions/flights.json
 	for scene in $(PLATES); do $(PYTHON) -m fem_reference cost --out reports/reference-cost-$$scene.json \

@@ -115,7 +115,6 @@ fn repeated_impacts_shake_down_as_in_the_paper() {
 }
 
 #[test]
-#[ignore = "slow, in `make evidence`; the shakedown above is one such test bed"]
 fn the_papers_statements_survive_a_test_bed() {
     let study = run("test-bed", Some(Model::B));
     assert_eq!((study.rows.len(), study.claims.len()), (384, 6));

@@ -212,7 +212,6 @@ fn the_peak_under_a_light_plate_is_as_exact_as_any() {
 
 /// A free foil of 2 g between 1.7 kg and 1300 kg that close in on it: it rattles 37 000 times before they part.
 #[test]
-#[ignore = "slow, in `make evidence`"]
 fn a_thin_plate_with_endless_impacts_is_refused() {
     let case = draw(12_000_010_418);
     let solved = integrate(&case.dry.system, None, &options(&case, 1e-7));
@@ -236,7 +235,6 @@ fn a_result_with_a_warning_of_its_uncertainty_is_undecided() {
 /// A foil of .1 mm between 23 kg and 23 t trembles at 1e8 rad/s on an inner contact a hundred thousand times as stiff as the outer one:
 /// five million steps follow it through a tenth of the impact.
 #[test]
-#[ignore = "slow, in `make evidence`"]
 fn a_thin_plate_with_endless_chatter_is_refused() {
     let case = draw(14_000_012_920);
     let solved = integrate(&case.dry.system, None, &options(&case, 1e-7));
