@@ -91,6 +91,12 @@ pub(crate) fn quantity(value: f64, unit: &str, digits: usize) -> String {
     with_unit(value, prefixed(unit, value), digits)
 }
 
+/// The `ends` of an interval in their unit, with the same prefix and four significant digits.
+pub(crate) fn interval(ends: [f64; 2], unit: &str) -> [String; 2] {
+    let to = prefixed(unit, ends[0].abs().max(ends[1].abs()));
+    ends.map(|value| with_unit(value, to, 4))
+}
+
 /// A given value in its unit, with as many digits as it was given with.
 pub(crate) fn measure(value: f64, unit: &str) -> String {
     if value == 0.0 {

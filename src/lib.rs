@@ -54,13 +54,13 @@ pub mod coverage;
 pub mod curves;
 pub mod evidence;
 pub mod external;
+pub mod fmu;
 mod format;
 pub mod interrupt;
 pub mod kinds;
 pub mod measured;
 pub mod optimise;
 pub mod plot;
-pub mod prediction;
 mod process_output;
 pub mod project;
 pub mod reference;
@@ -76,3 +76,4 @@ pub use impactcheck_physics::{Error, ExitStatus, Result};
 pub use impactcheck_physics::{
     actuator, analytical, body, contact, dynamics, error, file, flight, fluid, material, numerics, result,
 };
+pub use impactcheck_prediction as prediction;

@@ -1,4 +1,4 @@
-//! The project's files for a program that is moved away from them.
+//! The project's files for a program that is moved away from them, and the library that it puts into units for co-simulation.
 //!
 //! A macro of its own, so that only the small binary, not the library and its tests, is built again when a scene or a
 //! Python file changes.
@@ -26,6 +26,23 @@ pub fn files(_: TokenStream) -> TokenStream {
         |path: &str| format!("({path:?}, include_bytes!({:?}).as_slice()),", format!("{root}/{path}"));
     let entries: String = selected.iter().map(|(path, _)| entry(path)).collect();
     format!("({:?}, &[{entries}])", format!("{hash:016x}")).parse().expect("Rust")
+}
+
+/// An expression of type `&[u8]`: the dynamic library of the crate `impactcheck-fmu`, which cargo builds before everything that depends
+/// on it; empty where nothing is built but only checked.
+#[proc_macro]
+pub fn unit(_: TokenStream) -> TokenStream {
+    let name = format!("{}impactcheck_fmu{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let arguments: Vec<String> = std::env::args().collect();
+    // where the compiler is told to look for dependencies
+    let folders = arguments.iter().filter_map(|argument| argument.strip_prefix("dependency="));
+    let found = folders.map(|folder| Path::new(folder).join(&name)).find(|path| path.is_file());
+    match found.and_then(|path| path.canonicalize().ok()) {
+        Some(path) => format!("include_bytes!({:?}).as_slice()", path.display().to_string()),
+        None => "&[]".to_owned(),
+    }
+    .parse()
+    .expect("Rust")
 }
 
 fn is_selected(path: &str, shipped: impl Fn(&str) -> bool) -> bool {

@@ -10,6 +10,7 @@ mod coverage;
 mod diff;
 mod doctor;
 mod external;
+mod fmu;
 mod gate;
 mod help;
 pub mod in_process;
@@ -113,6 +114,11 @@ enum Command {
     /// Test the time integration on random scenes
     #[command(after_help = "Example: impactcheck stress --cases 1000 --seed 1")]
     Stress(stress::Arguments),
+    /// Write a scene as a Functional Mock-up Unit, for system simulations
+    #[command(
+        after_help = "Examples: impactcheck fmu scaled-plate-r10 -o plate.fmu\n          impactcheck fmu rocker-flight --fmi 2 -o valve.fmu"
+    )]
+    Fmu(fmu::Arguments),
     /// Show what is installed and how to install what is missing
     #[command(after_help = "Example: impactcheck doctor")]
     Doctor(JsonArgument),
@@ -219,6 +225,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Bench(arguments) => bench::run(&context, &arguments),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Stress(arguments) => stress::run(&context, &arguments),
+        Command::Fmu(arguments) => fmu::run(&context, &arguments),
         Command::Doctor(arguments) => doctor::run(&context, arguments),
         Command::Schema => schema::run(),
         Command::New(arguments) => new::run(&context, &arguments),

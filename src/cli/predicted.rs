@@ -2,8 +2,8 @@
 
 use super::requested_model::{ModelRequest, RequestedModel};
 use super::{Context, kinds};
-use crate::kinds::{SharedBodies, Similarity};
-use crate::prediction::{self, Interval, Prediction, Similar};
+use crate::kinds::SharedBodies;
+use crate::prediction::{self, Interval, Prediction, Similar, Similarity};
 use crate::result::Summary;
 use crate::scene::{Model, Scene};
 use serde::Serialize;
@@ -52,9 +52,7 @@ impl<'a> PredictedSummary<'a> {
             summary,
             prediction: prediction.as_ref().ok(),
             prediction_reason: prediction.as_ref().err(),
-            similarity: is_continuum
-                .then(|| Similarity::of(crate::kinds::of(scene), scene, summary).ok())
-                .flatten(),
+            similarity: is_continuum.then(|| Similarity::of(scene, summary).ok()).flatten(),
         }
     }
 }

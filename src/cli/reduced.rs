@@ -5,7 +5,7 @@ use super::requested_model::{self, ModelRequest};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{ExitStatus, Result};
 use crate::file::write_file;
-use crate::format::{prefixed, with_unit};
+use crate::format::{self, prefixed, with_unit};
 use crate::kinds::SharedBodies;
 use crate::prediction::{Interval, Prediction};
 use crate::report::{self, history_format};
@@ -94,7 +94,7 @@ fn predicted_lines(intervals: &BTreeMap<&'static str, Interval>, summary: &Summa
                 "  a reference would find ({level:.0} %, from {scenes} solved scenes of the group `{stratum}`)"
             ));
         }
-        let [low, high] = interval.shown(unit);
+        let [low, high] = format::interval([interval.low, interval.high], unit);
         lines.push(format!("  {name:<24} {low:>14} to {high}"));
     }
     lines.join("\n")

@@ -60,8 +60,14 @@ mod tests {
     use crate::scene::{Scene, Tolerance, Tolerances};
 
     fn impact(efficiency: f64, plastic_work: f64, locked_in_energy: Option<f64>) -> Impact {
-        let quantity =
-            Quantity { name: "efficiency", unit: "1", curve: None, is_count: false, value: Some(efficiency) };
+        let quantity = Quantity {
+            name: "efficiency",
+            about: "Eq. (1) of this impact.",
+            unit: "1",
+            curve: None,
+            is_count: false,
+            value: Some(efficiency),
+        };
         let band = |half: f64| locked_in_energy.map(|_| half);
         let known = [("efficiency", 0.001), ("plastic_work", 2e-6), ("locked_in_energy", 1e-6)];
         Impact {

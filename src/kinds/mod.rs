@@ -9,18 +9,16 @@ pub mod general_impact;
 mod place;
 pub mod plate_impact;
 pub mod seal_seat;
-mod similarity;
 
 pub use approach::Approach;
 pub use features::Feature;
 pub use general_impact::{announce_set_ups, scene_of_body};
 pub use impactcheck_physics::kinds::*;
-pub use place::{MEASURES, Place};
+pub use place::Place;
 pub use plate_impact::closed_forms::{ClosedForm, Form};
 pub use plate_impact::shared::SharedBodies;
 /// The mesh that a series of impacts follows, of kinds that need one.
 pub use seal_seat::SeatMesh as FollowedMesh;
-pub use similarity::Similarity;
 
 use crate::error::{Error, Result};
 use crate::result::Summary;
@@ -106,25 +104,6 @@ pub trait Kind: physics::Kind {
     /// Where `scene` with the result `summary` lies among others; `None` if that is not known.
     fn place(&self, _: &Scene, _: &Summary) -> Option<Place> {
         None
-    }
-
-    /// Group of the validation base that `scene` belongs to.
-    ///
-    /// # Errors
-    /// A sentence of scenes that the base has none like.
-    fn stratum(&self, _: &Scene) -> std::result::Result<&'static str, String> {
-        Err(format!("the validation base has no scenes of kind `{}`", self.name()))
-    }
-
-    /// Dimensionless numbers of `scene` by name that scenes of the base are drawn in.
-    fn numbers(&self, _: &Scene) -> Vec<(&'static str, f64)> {
-        Vec::new()
-    }
-
-    /// Dimensionless numbers of `scene` by name that its result decides, with the `summary` of model C; all positive, or `None` if that
-    /// does not tell.
-    fn result_numbers(&self, _: &Scene, _summary: &Summary) -> Option<Vec<(&'static str, f64)>> {
-        Some(Vec::new())
     }
 
     /// Whether a material of `scene` deforms plastically.

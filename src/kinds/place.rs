@@ -4,9 +4,6 @@ use crate::result::Summary;
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 
-/// What the numbers of a [`Place`] are, in their order.
-pub const MEASURES: [&str; 3] = ["patch/thickness", "contact/period", "mass ratio"];
-
 /// A plate impact among others.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Place {
@@ -28,7 +25,7 @@ impl Place {
         super::of(scene).place(scene, summary)
     }
 
-    /// The numbers in the order of [`MEASURES`].
+    /// The numbers in the order of [`MEASURES`](crate::prediction::MEASURES).
     pub fn measures(&self) -> [f64; 3] {
         [self.patch_over_thickness, self.contact_over_period, self.mass_ratio]
     }

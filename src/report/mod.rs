@@ -34,6 +34,7 @@ pub use page::model::{body_page, model_page};
 pub use page::moves::moves_page;
 pub use page::scene::scene_page;
 pub use page::section::measured::efficiency_figure;
+pub use page::unit::unit_page;
 pub use terminal::{Width, alone, measured_alone, terminal};
 pub use write::{check_writable, write, write_measured};
 

@@ -5,7 +5,8 @@
 
 mod record;
 
-pub use crate::kinds::{MEASURES, Place};
+pub use crate::kinds::Place;
+pub use crate::prediction::MEASURES;
 pub use record::{merge, of_store, record, shipped, update};
 
 use crate::comparison::{Check, Discrepancy, ModelComparison, SceneComparison, value_in};

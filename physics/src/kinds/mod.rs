@@ -17,6 +17,7 @@ use crate::flight::Launch;
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary, Table};
 use crate::scene::{Language, Model, Scene};
 
+use general_impact::MeshRequest;
 pub use reading::{schema, unit_of};
 use seal_seat::SeatMesh;
 pub use series::{Series, SeriesModel, series};
@@ -81,6 +82,11 @@ pub trait Kind: Language {
     /// if none flies.
     fn launch(&self, _: &Summary) -> Option<Launch> {
         None
+    }
+
+    /// The meshes that the models of `scene` read, of kinds whose bodies are meshed from files or dimensions.
+    fn mesh_requests(&self, _: &Scene) -> Vec<MeshRequest> {
+        Vec::new()
     }
 
     /// What must hold of a result of `scene`; of its curves, if they can be sampled.

@@ -11,6 +11,8 @@ const OF_A_BODY: &str = "first_frequency";
 pub struct Quantity {
     /// Name, as in the JSON of a summary.
     pub name: &'static str,
+    /// What it is, in sentences.
+    pub about: &'static str,
     /// SI unit.
     pub unit: &'static str,
     /// The curve of a history that it belongs to, as a peak or last value.
@@ -132,17 +134,18 @@ impl Number for u32 {
 /// Declares the typed results of a kind of scene, every field with its unit and the curve it belongs to: the view that the kind itself works with, and
 /// the [`Table`] it becomes.
 macro_rules! quantities {
-    ($(#[$doc:meta])* $name:ident { $($(#[$about:meta])* $field:ident: $number:ty, $unit:literal $(, of $curve:ident)?;)+ }) => {
+    ($(#[$doc:meta])* $name:ident { $($(#[doc = $about:literal])+ $field:ident: $number:ty, $unit:literal $(, of $curve:ident)?;)+ }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq)]
         pub struct $name {
-            $($(#[$about])* pub $field: $number,)+
+            $($(#[doc = $about])+ pub $field: $number,)+
         }
 
         impl $name {
             /// The quantities, in order, without values.
             pub const ALL: &'static [$crate::result::Quantity] = &[$($crate::result::Quantity {
                 name: stringify!($field),
+                about: concat!($($about),+).trim_ascii(),
                 unit: $unit,
                 curve: $crate::result::table::curve(&[$(stringify!($curve))?]),
                 is_count: <$number as $crate::result::table::Number>::IS_COUNT,

@@ -11,7 +11,7 @@ use crate::{Error, Result};
 pub struct Field {
     pub(super) path: String,
     pub(super) keys: Vec<String>,
-    kind: &'static Kind,
+    key: &'static grammar::Field,
 }
 
 /// Why a value can't stand in a field.
@@ -37,14 +37,36 @@ impl Field {
 
     /// Whether it takes whole numbers only.
     pub fn is_count(&self) -> bool {
-        matches!(self.kind, Kind::Count(..))
+        matches!(self.key.kind, Kind::Count(..))
     }
 
     /// Dimension of its numbers.
     pub(super) fn dimension(&self) -> Dimension {
-        match self.kind {
-            Kind::Quantity(dimension, _) | Kind::Quantities(dimension, ..) => *dimension,
+        match self.key.kind {
+            Kind::Quantity(dimension, _) | Kind::Quantities(dimension, ..) => dimension,
             _ => Dimension::NONE,
+        }
+    }
+
+    /// What it is, in a line.
+    pub fn description(&self) -> &'static str {
+        self.key.doc
+    }
+
+    /// Least and largest number that [`Field::check`] admits, in SI. Some kinds of fields admit 0 although it is below the least.
+    pub fn limits(&self) -> [f64; 2] {
+        match self.key.kind {
+            Kind::Quantity(dimension, bound) | Kind::Quantities(dimension, bound, _) => {
+                let [smallest, largest] = dimension.span();
+                let closed = |end: Option<(f64, bool)>, inside: fn(f64) -> f64| {
+                    end.map(|(at, is_valid)| if is_valid { at } else { inside(at) })
+                };
+                let low = closed(bound.low, f64::next_up).unwrap_or(-largest);
+                let high = closed(bound.high, f64::next_down).unwrap_or(largest);
+                [if low > 0.0 { low.max(smallest) } else { low }, high.min(largest)]
+            }
+            Kind::Count(low, high) => [low as f64, high as f64],
+            _ => [f64::NEG_INFINITY, f64::INFINITY],
         }
     }
 
@@ -82,7 +104,7 @@ impl Field {
         let shown = self.dimension().suffix();
         let rejected =
             |range: String| Rejected(format!("`{}` is {value}{shown}, but it must be {range}", self.path));
-        match self.kind {
+        match self.key.kind {
             Kind::Quantity(_, bound) | Kind::Quantities(_, bound, _) if !bound.holds(value) => {
                 Err(rejected(bound.describe(unit)))
             }
@@ -94,7 +116,7 @@ impl Field {
             }
             Kind::Quantity(..) | Kind::Quantities(..) => Ok(()),
             Kind::Count(low, high) => {
-                let whole = value.fract() == 0.0 && value >= *low as f64 && value <= *high as f64;
+                let whole = value.fract() == 0.0 && value >= low as f64 && value <= high as f64;
                 if whole { Ok(()) } else { Err(rejected(format!("a whole number from {low} to {high}"))) }
             }
             _ => Err(rejected("a number".into())),
@@ -187,7 +209,7 @@ fn collect(
         keys.push(field.key.to_owned());
         match &field.kind {
             Kind::Quantity(..) | Kind::Count(..) => {
-                found.push(Field { path: keys.join("."), keys: keys.clone(), kind: &field.kind });
+                found.push(Field { path: keys.join("."), keys: keys.clone(), key: field });
             }
             // the entries of a list that the file has, counted from 1
             Kind::Quantities(..) => {
@@ -195,7 +217,7 @@ fn collect(
                 let count = if let Some(Checked::Numbers(list)) = list { list.len() } else { 0 };
                 for entry in 1..=count {
                     keys.push(entry.to_string());
-                    found.push(Field { path: keys.join("."), keys: keys.clone(), kind: &field.kind });
+                    found.push(Field { path: keys.join("."), keys: keys.clone(), key: field });
                     keys.pop();
                 }
             }

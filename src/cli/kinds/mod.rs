@@ -8,10 +8,11 @@ use super::requested_model::ModelRequest;
 use super::requested_model::RequestedModel;
 use crate::error::{Error, Result};
 use crate::kinds::{self, Kind, SharedBodies};
-use crate::reference::Stored;
+use crate::reference::{self, Stored};
 use crate::report::Cost;
 use crate::result::Outcome;
 use crate::scene::{Model, Scene};
+use std::path::PathBuf;
 
 /// Relative error of the time integration when the caller names none.
 const DEFAULT_TOLERANCE: f64 = 1e-7;
@@ -39,8 +40,37 @@ pub(super) trait ReducedModels: Sync {
             return Err(Error::Usage(format!("--mesh {mesh}: the models of `{}` have no mesh", scene.name)));
         }
         let model = request.named(scene)?;
-        let tolerance = request.integration_tolerance(DEFAULT_TOLERANCE)?;
+        let tolerance = self.tolerance(request)?;
         kinds::of(scene).model(scene, model, request.modes)?.run_with_history(tolerance)
+    }
+
+    /// Relative error of the time integration that `request` asks for.
+    ///
+    /// # Errors
+    /// As [`ModelRequest::integration_tolerance`].
+    fn tolerance(&self, request: &ModelRequest) -> Result<f64> {
+        request.integration_tolerance(DEFAULT_TOLERANCE)
+    }
+
+    /// The files that the models of `scene` read, under the names that a unit for co-simulation finds them by.
+    ///
+    /// # Errors
+    /// Those of the mesher.
+    fn files(&self, _: &Context, scene: &Scene, _: &ModelRequest) -> Result<Vec<(String, PathBuf)>> {
+        let mut files = Vec::new();
+        for request in kinds::of(scene).mesh_requests(scene) {
+            let own = request.factor == 1.0;
+            let mesh = match reference::body_mesh(&request) {
+                // without the coarser mesh the error by the mesh is not known, and that is warned of
+                Err(_) if !own => continue,
+                mesh => mesh?,
+            };
+            for extension in ["vtu", "json"] {
+                let name = format!("{}/{}.{extension}", impactcheck_fmu::MESHES, request.key);
+                files.push((name, mesh.with_extension(extension)));
+            }
+        }
+        Ok(files)
     }
 
     /// Whether [`ReducedModels::with_reference`] solves on the very mesh of the reference.

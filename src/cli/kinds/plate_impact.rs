@@ -1,6 +1,6 @@
 //! The reduced models of plate impacts.
 
-use super::{Compared, ReducedModels};
+use super::{Compared, DEFAULT_TOLERANCE, ReducedModels};
 use crate::cli::requested_model::ModelRequest;
 use crate::cli::requested_model::{self, RequestedModel};
 use crate::cli::{Context, progress};
@@ -14,8 +14,6 @@ use crate::result::Outcome;
 use crate::scene::{Model, Scene};
 use std::time::Instant;
 
-/// Relative error of the efficiency when the caller names none.
-const DEFAULT_TOLERANCE: f64 = 1e-7;
 /// Relative error of the efficiency that the time integration may have in a comparison.
 const COMPARISON_TOLERANCE: f64 = 1e-7;
 
@@ -40,10 +38,9 @@ impl ReducedModels for Plates {
         }
         let default = RequestedModel::Named(scene.reduced.model.unwrap_or(Model::C));
         let (reduced, tolerance) = match request.model.unwrap_or(default) {
-            RequestedModel::Named(model) => (
-                Reduced::in_series(scene.clone(), model, request.modes, bodies)?,
-                request.integration_tolerance(DEFAULT_TOLERANCE)?,
-            ),
+            RequestedModel::Named(model) => {
+                (Reduced::in_series(scene.clone(), model, request.modes, bodies)?, self.tolerance(request)?)
+            }
             RequestedModel::External => return Err(requested_model::needs_a_reference()),
             RequestedModel::Auto => {
                 if let Some(modes) = request.modes {
@@ -52,10 +49,19 @@ impl ReducedModels for Plates {
                     )));
                 }
                 let tolerance = request.tolerance.unwrap_or(auto::DEFAULT_TOLERANCE);
-                (chosen(scene, tolerance, bodies)?, auto::integration_tolerance(tolerance))
+                (chosen(scene, tolerance, bodies)?, self.tolerance(request)?)
             }
         };
         if curves { reduced.run_with_history(tolerance) } else { reduced.run_judged(tolerance) }
+    }
+
+    fn tolerance(&self, request: &ModelRequest) -> Result<f64> {
+        match request.model {
+            Some(RequestedModel::Auto) => {
+                Ok(auto::integration_tolerance(request.tolerance.unwrap_or(auto::DEFAULT_TOLERANCE)))
+            }
+            _ => request.integration_tolerance(DEFAULT_TOLERANCE),
+        }
     }
 
     fn alone(

@@ -12,6 +12,7 @@ use crate::reference::{self, Resolution, Stored};
 use crate::report::Cost;
 use crate::result::Outcome;
 use crate::scene::{Model, Scene};
+use std::path::PathBuf;
 
 /// Model C.
 pub(super) struct Seats;
@@ -28,13 +29,7 @@ impl ReducedModels for Seats {
         let model = request.named(scene)?;
         let cache = Cache::from_environment();
         let bar = Bar::new(context, &scene.name);
-        let mesh = match &request.mesh {
-            Some(path) => SeatMesh::open(path)?,
-            None => {
-                let show = &mut |step: &_| bar.show(step);
-                SeatMesh::open(&reference::seat_mesh_with(scene, Resolution::Paper, &cache, show)?)?
-            }
-        };
+        let mesh = SeatMesh::open(&mesh_of(scene, request, &cache, &bar)?)?;
         let reduced = SeatModel::new_with(scene, model, request.modes, &mesh, &cache, &mut |part, done| {
             bar.part(part, done)
         })?;
@@ -45,8 +40,23 @@ impl ReducedModels for Seats {
             reduced.dofs,
             reduced.setup_seconds
         ));
-        let tolerance = request.integration_tolerance(DEFAULT_TOLERANCE)?;
+        let tolerance = self.tolerance(request)?;
         reduced.run_with_history(tolerance)
+    }
+
+    fn tolerance(&self, request: &ModelRequest) -> Result<f64> {
+        request.integration_tolerance(DEFAULT_TOLERANCE)
+    }
+
+    fn files(
+        &self,
+        context: &Context,
+        scene: &Scene,
+        request: &ModelRequest,
+    ) -> Result<Vec<(String, PathBuf)>> {
+        let bar = Bar::new(context, &scene.name);
+        let mesh = mesh_of(scene, request, &Cache::from_environment(), &bar)?;
+        Ok(vec![(impactcheck_fmu::SEAT_MESH.into(), mesh)])
     }
 
     fn shares_mesh(&self) -> bool {
@@ -80,5 +90,13 @@ impl ReducedModels for Seats {
         let outcome = model.run_with_history(DEFAULT_TOLERANCE)?;
         let cost = Cost { setup_seconds: model.setup_seconds, dofs: model.dofs };
         Ok((vec![outcome], vec![cost]))
+    }
+}
+
+/// The mesh that `request` names, or the one of the seat of `scene`.
+fn mesh_of(scene: &Scene, request: &ModelRequest, cache: &Cache, bar: &Bar) -> Result<PathBuf> {
+    match &request.mesh {
+        Some(path) => Ok(path.clone()),
+        None => reference::seat_mesh_with(scene, Resolution::Paper, cache, &mut |step: &_| bar.show(step)),
     }
 }

@@ -3,7 +3,6 @@
 mod features;
 mod from_file;
 mod set_up;
-mod similar;
 
 pub use from_file::scene_of_body;
 pub use impactcheck_physics::kinds::general_impact::*;
@@ -11,7 +10,6 @@ pub use set_up::announce_set_ups;
 
 use super::{Approach, ClosedForm, Feature, Form, Starter, Use};
 use crate::error::Result;
-use crate::result::Summary;
 use crate::scene::{Model, Scene, Shape};
 use std::path::Path;
 
@@ -58,18 +56,6 @@ impl super::Kind for Kind {
 
     fn yields(&self, scene: &Scene) -> bool {
         scene.general_impact().is_ok_and(yields)
-    }
-
-    fn stratum(&self, scene: &Scene) -> std::result::Result<&'static str, String> {
-        similar::stratum(scene.general_impact().map_err(|error| error.to_string())?)
-    }
-
-    fn numbers(&self, scene: &Scene) -> Vec<(&'static str, f64)> {
-        scene.general_impact().map(similar::numbers).unwrap_or_default()
-    }
-
-    fn result_numbers(&self, scene: &Scene, summary: &Summary) -> Option<Vec<(&'static str, f64)>> {
-        similar::result_numbers(scene.general_impact().ok()?, summary)
     }
 
     fn approach(&self, scene: &Scene) -> Result<Approach> {

@@ -2,7 +2,6 @@
 
 mod features;
 mod place;
-mod similar;
 
 pub use impactcheck_physics::kinds::plate_impact::*;
 
@@ -56,18 +55,6 @@ impl super::Kind for Kind {
 
     fn place(&self, scene: &Scene, summary: &Summary) -> Option<Place> {
         place::place(scene.plate_impact().ok()?, summary)
-    }
-
-    fn stratum(&self, scene: &Scene) -> std::result::Result<&'static str, String> {
-        similar::stratum(scene.plate_impact().map_err(|error| error.to_string())?)
-    }
-
-    fn numbers(&self, scene: &Scene) -> Vec<(&'static str, f64)> {
-        scene.plate_impact().map(similar::numbers).unwrap_or_default()
-    }
-
-    fn result_numbers(&self, scene: &Scene, summary: &Summary) -> Option<Vec<(&'static str, f64)>> {
-        similar::result_numbers(scene.plate_impact().ok()?, scene.run.end_time, summary)
     }
 
     fn yields(&self, scene: &Scene) -> bool {

@@ -3,8 +3,8 @@
 use crate::format::rounded;
 use crate::kinds::Place;
 use crate::kinds::plate_impact::PlateImpact;
+use crate::prediction::stokes_number;
 use crate::result::Summary;
-use std::f64::consts::PI;
 
 /// Significant digits of its numbers: the same on every machine.
 const DIGITS: usize = 7;
@@ -23,13 +23,4 @@ pub(super) fn place(setup: &PlateImpact, summary: &Summary) -> Option<Place> {
         measures.map(|value| rounded(value, DIGITS));
     let is_known = measures.iter().all(|measure| measure.is_finite() && *measure > 0.0);
     is_known.then_some(Place { patch_over_thickness, contact_over_period, mass_ratio, stokes_number })
-}
-
-/// Stokes number of the squeeze film, m v/(6 pi mu R^2) of the inner body at the outer one's speed; `None` without a film.
-pub(super) fn stokes_number(setup: &PlateImpact) -> Option<f64> {
-    let fluid = setup.fluid.as_ref().filter(|fluid| fluid.squeeze_film)?;
-    let inner = &setup.inner;
-    let tip = inner.shape.tip_radius();
-    let mass = inner.shape.mass(&inner.material);
-    Some(mass * setup.outer.speed / (6.0 * PI * fluid.viscosity * tip * tip))
 }

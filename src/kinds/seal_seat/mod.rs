@@ -1,7 +1,6 @@
 //! Seal seats: a sphere is launched out of a flexibly mounted conical seat.
 
 mod features;
-mod similar;
 
 pub use impactcheck_physics::kinds::seal_seat::*;
 
@@ -33,14 +32,6 @@ impl super::Kind for Kind {
 
     fn geometry_hash(&self, scene: &Scene) -> Option<String> {
         scene.seal_seat().ok().map(|setup| setup.geometry_hash())
-    }
-
-    fn stratum(&self, scene: &Scene) -> std::result::Result<&'static str, String> {
-        similar::stratum(scene.seal_seat().map_err(|error| error.to_string())?)
-    }
-
-    fn numbers(&self, scene: &Scene) -> Vec<(&'static str, f64)> {
-        scene.seal_seat().map(similar::numbers).unwrap_or_default()
     }
 
     fn objective(&self, _: &Scene) -> &'static str {

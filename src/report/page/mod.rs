@@ -14,4 +14,5 @@ pub(super) mod page_data;
 mod prose;
 pub(crate) mod scene;
 pub(crate) mod section;
+pub(crate) mod unit;
 pub(crate) mod validated_map;

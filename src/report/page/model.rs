@@ -1,6 +1,6 @@
 //! The page of one reduced model alone: what a scene without a reference can show.
 
-use crate::format::{model_name, prefixed, with_unit};
+use crate::format::{self, model_name, prefixed, with_unit};
 use crate::kinds::of as kind_of;
 use crate::plot::{ChartPanel, chart};
 use crate::prediction::Prediction;
@@ -82,7 +82,7 @@ fn quantities(scene: &Scene, summary: &Summary, prediction: &Prediction) -> Mark
             th scope="row" { (named(quantity.name)) }
             td { (shown(quantity.value, quantity.unit)) }
             @if let Some(intervals) = found {
-                td { @if let Some(one) = intervals.get(quantity.name) { (one.shown(quantity.unit).join(" to ")) } }
+                td { @if let Some(one) = intervals.get(quantity.name) { (format::interval([one.low, one.high], quantity.unit).join(" to ")) } }
             }
         } } }
     } }

@@ -1,8 +1,8 @@
 //! An elastic body or a plate that the outer body strikes, and the inner body behind it if there is one.
 
-use super::Body;
-use super::elastic::ElasticBody;
+use super::elastic::{self, ElasticBody};
 use super::scene::sphere_radius;
+use super::{Body, MeshRequest};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::body::continuum::{MeshOptions, cached};
@@ -157,6 +157,11 @@ pub(in crate::kinds) fn off_centre_plate(
     let inner: Vec<f64> = system.approach[1][PLATE..].iter().map(|approach| -approach).collect();
     system.centre[PLATE..].copy_from_slice(&inner);
     Ok((system, between.coarse, between.warnings))
+}
+
+/// The meshes of a `plate` that `outer` strikes beside its centre.
+pub(in crate::kinds) fn off_centre_meshes(plate: &Plate, outer: &Outer) -> Vec<MeshRequest> {
+    elastic::mesh_requests(&Body::of_plate(plate, outer.offset))
 }
 
 #[cfg(test)]

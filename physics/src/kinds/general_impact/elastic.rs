@@ -1,6 +1,6 @@
 //! The struck body's reduced form, from its mesh and from a coarser one that shows what the mesh changes.
 
-use super::body::{Body, announce, mesh};
+use super::body::{Body, MeshRequest, announce, mesh};
 use crate::body::ModalBody;
 use crate::body::cache::Cache;
 use crate::body::memo::MemoList;
@@ -50,6 +50,11 @@ static REDUCED: LazyLock<MemoList<(ReducedKey, ElasticBody)>> = LazyLock::new(Me
 
 fn reduced_key(body: &Body) -> ReducedKey {
     (body.mesh_request(1.0).key, ratios(body))
+}
+
+/// The meshes that `body` is reduced on: its own, and a coarser one for the error by the mesh.
+pub(super) fn mesh_requests(body: &Body) -> Vec<MeshRequest> {
+    vec![body.mesh_request(1.0), body.mesh_request(COARSER)]
 }
 
 impl ElasticBody {

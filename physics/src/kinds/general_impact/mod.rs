@@ -10,7 +10,7 @@ mod results;
 mod scene;
 mod soundness;
 
-pub(super) use between::off_centre_plate;
+pub(super) use between::{off_centre_meshes, off_centre_plate};
 pub use body::{
     Announcer, Body, BodyMaterials, BodyPlace, Disc, MeshRequest, Mesher, content, set_announcer, set_mesher,
 };
@@ -82,6 +82,11 @@ impl super::Kind for Kind {
         scene
             .general_impact()
             .map_or_else(|_| Table::new(self.quantities()), |setup| checks::shown(setup, history))
+    }
+
+    fn mesh_requests(&self, scene: &Scene) -> Vec<MeshRequest> {
+        let body = scene.general_impact().ok().and_then(GeneralImpact::body);
+        body.map_or_else(Vec::new, elastic::mesh_requests)
     }
 
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {

@@ -18,6 +18,7 @@ mod truncation;
 mod validity;
 pub mod variants;
 
+use super::general_impact::{MeshRequest, off_centre_meshes};
 use super::{SeatMesh, Series, SeriesModel};
 use crate::error::Result;
 use crate::flight::Launch;
@@ -89,6 +90,11 @@ impl super::Kind for Kind {
         // over the rocker the sphere leaves along the floor
         let speed = summary.value("inner_velocity_final")?.abs();
         Some(Launch { speed, angle: FRAC_PI_2, spin: 0.0 })
+    }
+
+    fn mesh_requests(&self, scene: &Scene) -> Vec<MeshRequest> {
+        let setup = scene.plate_impact().ok().filter(|setup| !setup.outer.is_centred());
+        setup.map_or_else(Vec::new, |setup| off_centre_meshes(&setup.plate, &setup.outer))
     }
 
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {

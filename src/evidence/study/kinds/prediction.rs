@@ -3,13 +3,12 @@
 use crate::error::Result;
 use crate::evidence::study::{Cell, Claim, Note, Study};
 use crate::format::percent_above;
-use crate::kinds::MEASURES;
 use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::colours::{MODELS, hex};
 use crate::plot::polyline::path;
 use crate::plot::{Svg, Theme};
 use crate::prediction::held_out::{HeldOut, JudgedValue, expected, held_out, quantities, strata};
-use crate::prediction::{SolvedScene, error, refused, solved};
+use crate::prediction::{MEASURES, SolvedScene, error, refused, solved};
 use crate::scene::Model;
 use maud::{Markup, html};
 

@@ -1,9 +1,9 @@
 //! The group of the validation base that an impact on a body belongs to, and its numbers.
 
-use crate::contact::Hertz;
-use crate::kinds::general_impact::GeneralImpact;
-use crate::result::Summary;
-use crate::scene::Shape;
+use impactcheck_physics::contact::Hertz;
+use impactcheck_physics::kinds::general_impact::GeneralImpact;
+use impactcheck_physics::result::Summary;
+use impactcheck_physics::scene::Shape;
 
 /// The group of `setup`, as `validation/draw.py` names it.
 ///

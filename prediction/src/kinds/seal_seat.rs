@@ -1,6 +1,6 @@
 //! The group of the validation base that a seal seat belongs to, and its numbers.
 
-use crate::kinds::seal_seat::{SealSeat, SphereBody};
+use impactcheck_physics::kinds::seal_seat::{SealSeat, SphereBody};
 
 /// The group of `setup`, as `validation/draw.py` names it.
 ///

@@ -4,10 +4,10 @@
 //! of model C.
 
 use super::{LEVEL, predicted_errors, scale};
-use crate::dynamics::error_control::LOW_ACCURACY;
-use crate::error::Result;
-use crate::result::{CandidateModel, Choice, Summary};
-use crate::scene::{Model, Scene};
+use impactcheck_physics::dynamics::error_control::LOW_ACCURACY;
+use impactcheck_physics::error::Result;
+use impactcheck_physics::result::{CandidateModel, Choice, Summary};
+use impactcheck_physics::scene::{Model, Scene};
 use std::collections::BTreeMap;
 
 /// Tolerance when the user names none.

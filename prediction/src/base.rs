@@ -1,6 +1,6 @@
 //! The validation base: random scenes that references have solved (`make validation`), one a line.
 
-use crate::scene::Model;
+use impactcheck_physics::scene::Model;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;

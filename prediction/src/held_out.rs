@@ -3,7 +3,7 @@
 use super::base::{SolvedScene, solved};
 use super::conformal::{ErrorScale, SeenError};
 use super::{LEVEL, error, errors};
-use crate::scene::Model;
+use impactcheck_physics::scene::Model;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Fewest scenes of a group whose halves are judged: each has the 19 that an interval of 95 % needs.

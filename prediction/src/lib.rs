@@ -3,18 +3,22 @@
 //! They come from the errors of model C in similar scenes of the validation base. Models A and B are judged by model C of the same
 //! scene: what they differ by is known.
 
+#![warn(missing_docs)]
+
 pub mod auto;
 mod base;
 mod conformal;
 pub mod held_out;
+mod kinds;
+mod similarity;
 
 pub use base::{RefusedScene, SolvedScene, refused, solved};
 pub use conformal::{ErrorScale, SeenError};
+pub use kinds::stokes_number;
+pub use similarity::{MEASURES, Similarity};
 
-use crate::format::{prefixed, with_unit};
-use crate::kinds::{self, Similarity};
-use crate::result::{Quantity, Summary};
-use crate::scene::{Model, Scene};
+use impactcheck_physics::result::{Quantity, Summary};
+use impactcheck_physics::scene::{Model, Scene};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -31,8 +35,6 @@ const COMPONENT: &str = "sphere_velocity";
 const ANGLE: &str = "_angle";
 /// End of the names of restitutions.
 const RESTITUTION: &str = "_restitution";
-/// Digits shown of an interval.
-const DIGITS: usize = 4;
 /// Widest band over the scale with which a reference determines a quantity.
 const DETERMINED: f64 = 0.05;
 /// Standard deviation of the errors of the base's references over their bands, which are wider than they need to be; against meshes with
@@ -52,14 +54,6 @@ pub struct Interval {
     pub scenes: usize,
     /// What they have in common.
     pub stratum: &'static str,
-}
-
-impl Interval {
-    /// Both values with the same prefix of `unit`.
-    pub fn shown(&self, unit: &str) -> [String; 2] {
-        let to = prefixed(unit, self.low.abs().max(self.high.abs()));
-        [self.low, self.high].map(|value| with_unit(value, to, DIGITS))
-    }
 }
 
 /// Intervals by quantity, or why there are none.
@@ -96,7 +90,7 @@ pub fn predicted_errors(scene: &Scene, continuum: &Summary) -> Result<BTreeMap<&
 
 /// Speed of the outer body, m/s; NaN of kinds whose quantities have no scale of it.
 pub fn impact_speed(scene: &Scene) -> f64 {
-    kinds::of(scene).approach(scene).map_or(f64::NAN, |approach| approach.outer_speed)
+    kinds::of(scene).speed(scene)
 }
 
 /// Scenes of the base that are of the same group as another one.
@@ -135,7 +129,7 @@ impl Similar {
         scene: &Scene,
         continuum: &Summary,
     ) -> Result<BTreeMap<&'static str, (f64, usize)>, String> {
-        let own = Similarity::of(kinds::of(scene), scene, continuum)?;
+        let own = Similarity::of(scene, continuum)?;
         for (name, value) in &own.results {
             self.require_within(name, *value, |other| other.results.get(*name).copied())?;
         }

@@ -1,10 +1,13 @@
 //! What makes a scene similar to others of the validation base.
 
-use super::Kind;
-use crate::result::Summary;
-use crate::scene::Scene;
+use crate::kinds;
+use impactcheck_physics::result::Summary;
+use impactcheck_physics::scene::Scene;
 use serde::Serialize;
 use std::collections::BTreeMap;
+
+/// What the numbers are, in their order, that decide how well a reduced model of an impact through a plate does.
+pub const MEASURES: [&str; 3] = ["patch/thickness", "contact/period", "mass ratio"];
 
 /// Group and dimensionless numbers of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -22,7 +25,8 @@ impl Similarity {
     ///
     /// # Errors
     /// A sentence of scenes that the base has none like, and where the result does not tell.
-    pub fn of(kind: &dyn Kind, scene: &Scene, continuum: &Summary) -> Result<Self, String> {
+    pub fn of(scene: &Scene, continuum: &Summary) -> Result<Self, String> {
+        let kind = kinds::of(scene);
         let results =
             kind.result_numbers(scene, continuum).ok_or("model C does not determine the contact")?;
         let numbers = kind.numbers(scene).into_iter().collect();

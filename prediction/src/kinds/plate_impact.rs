@@ -1,12 +1,12 @@
 //! The group of the validation base that a plate impact belongs to.
 
-use super::place::stokes_number;
-use crate::contact::Hertz;
-use crate::kinds::MEASURES;
-use crate::kinds::plate_impact::PlateImpact;
-use crate::material::{Material, modulus_ratio};
-use crate::result::Summary;
-use crate::scene::{Edge, Fluid, Shape};
+use crate::MEASURES;
+use impactcheck_physics::contact::Hertz;
+use impactcheck_physics::kinds::plate_impact::PlateImpact;
+use impactcheck_physics::material::{Material, modulus_ratio};
+use impactcheck_physics::result::Summary;
+use impactcheck_physics::scene::{Edge, Fluid, Shape};
+use std::f64::consts::PI;
 
 /// The group of `setup`, as `validation/draw.py` names it.
 ///
@@ -126,4 +126,13 @@ pub(super) fn result_numbers(
     let numbers: Vec<(&str, f64)> =
         MEASURES.into_iter().zip(measures).chain(special.into_iter().flatten()).collect();
     numbers.iter().all(|(_, value)| value.is_finite() && *value > 0.0).then_some(numbers)
+}
+
+/// Stokes number of the squeeze film, m v/(6 pi mu R^2) of the inner body at the outer one's speed; `None` without a film.
+pub fn stokes_number(setup: &PlateImpact) -> Option<f64> {
+    let fluid = setup.fluid.as_ref().filter(|fluid| fluid.squeeze_film)?;
+    let inner = &setup.inner;
+    let tip = inner.shape.tip_radius();
+    let mass = inner.shape.mass(&inner.material);
+    Some(mass * setup.outer.speed / (6.0 * PI * fluid.viscosity * tip * tip))
 }

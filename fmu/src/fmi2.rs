@@ -1,0 +1,350 @@
+//! The C interface of FMI 2.0, co-simulation (`fmi2Functions.h`).
+//!
+//! # Safety
+//! As [`crate::fmi3`].
+#![expect(clippy::missing_safety_doc, reason = "the standard says how these functions are called")]
+
+use crate::instance::{Boolean2, Instance, Log, LogMessage2, Logger, Phase, Saved, Status, text};
+use crate::unit::Refusal;
+use crate::variables::Type;
+use std::ffi::{c_char, c_int, c_void};
+use std::path::PathBuf;
+use std::ptr;
+use std::slice;
+
+const ANY: [Phase; 4] = [Phase::Instantiated, Phase::Initialization, Phase::Step, Phase::Terminated];
+const SETTABLE: [Phase; 3] = [Phase::Instantiated, Phase::Initialization, Phase::Step];
+/// `fmi2CoSimulation`.
+const CO_SIMULATION: c_int = 1;
+/// `fmi2LastSuccessfulTime`.
+const LAST_SUCCESSFUL_TIME: c_int = 2;
+
+/// `fmi2CallbackFunctions`.
+#[derive(Debug)]
+#[repr(C)]
+pub struct Callbacks {
+    logger: Option<LogMessage2>,
+    allocate: *const c_void,
+    free: *const c_void,
+    step_finished: *const c_void,
+    environment: *mut c_void,
+}
+
+/// `fmi2GetTypesPlatform`.
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+    c"default".as_ptr()
+}
+
+/// `fmi2GetVersion`.
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetVersion() -> *const c_char {
+    c"2.0".as_ptr()
+}
+
+/// `fmi2Instantiate`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Instantiate(
+    name: *const c_char,
+    kind: c_int,
+    token: *const c_char,
+    resources: *const c_char,
+    functions: *const Callbacks,
+    _visible: Boolean2,
+    logging_on: Boolean2,
+) -> *mut Instance {
+    let functions = unsafe { functions.as_ref() };
+    let log = Log {
+        name: unsafe { text(name) }.to_owned(),
+        logger: functions.and_then(|of| of.logger).map_or(Logger::Silent, Logger::Two),
+        environment: functions.map_or(ptr::null_mut(), |of| of.environment),
+        is_on: logging_on != 0,
+    };
+    if kind != CO_SIMULATION {
+        log.write(Status::Error, "the unit is for co-simulation only");
+        return ptr::null_mut();
+    }
+    let (token, resources) = unsafe { (text(token), text(resources)) };
+    Instance::create(log, token, &path_of(&resources.to_string_lossy()), false)
+}
+
+/// The path behind a URI such as `file:///tmp/my%20unit/resources`.
+fn path_of(uri: &str) -> PathBuf {
+    let path = uri.strip_prefix("file://").map_or(uri, |rest| &rest[rest.find('/').unwrap_or(0)..]);
+    // "/C:/..." of Windows
+    let path = if path.as_bytes().get(2) == Some(&b':') { path.trim_start_matches('/') } else { path };
+    let (mut bytes, mut rest) = (Vec::new(), path.as_bytes());
+    while let [first, tail @ ..] = rest {
+        let escaped = (*first == b'%').then(|| tail.get(..2)).flatten();
+        let escaped = escaped.and_then(|two| u8::from_str_radix(std::str::from_utf8(two).ok()?, 16).ok());
+        bytes.push(escaped.unwrap_or(*first));
+        rest = if escaped.is_some() { &tail[2..] } else { tail };
+    }
+    String::from_utf8_lossy(&bytes).into_owned().into()
+}
+
+/// `fmi2FreeInstance`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeInstance(instance: *mut Instance) {
+    unsafe { Instance::free(instance) };
+}
+
+/// `fmi2SetDebugLogging`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetDebugLogging(
+    instance: *mut Instance,
+    on: Boolean2,
+    count: usize,
+    categories: *const *const c_char,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2SetDebugLogging", &ANY, |own| own.set_log(on != 0, categories, count))
+    }
+}
+
+/// `fmi2SetupExperiment`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetupExperiment(
+    instance: *mut Instance,
+    _tolerance_defined: Boolean2,
+    _tolerance: f64,
+    start: f64,
+    _stop_defined: Boolean2,
+    _stop: f64,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2SetupExperiment", &[Phase::Instantiated], |own| own.unit.begin(start))
+    }
+}
+
+/// `fmi2EnterInitializationMode`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2EnterInitializationMode(instance: *mut Instance) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2EnterInitializationMode", &[Phase::Instantiated], |own| {
+            own.phase = Phase::Initialization;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi2ExitInitializationMode`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2ExitInitializationMode(instance: *mut Instance) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2ExitInitializationMode", &[Phase::Initialization], |own| {
+            own.phase = Phase::Step;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi2Terminate`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Terminate(instance: *mut Instance) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2Terminate", &[Phase::Step], |own| {
+            own.phase = Phase::Terminated;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi2Reset`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Reset(instance: *mut Instance) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2Reset", &ANY, |own| {
+            own.unit.reset();
+            own.phase = Phase::Instantiated;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi2DoStep`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DoStep(
+    instance: *mut Instance,
+    time: f64,
+    step: f64,
+    _no_state_before: Boolean2,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2DoStep", &[Phase::Step], |own| {
+            for remark in own.unit.step(time, step, false)?.remarks {
+                own.log.write(Status::Warning, &remark);
+            }
+            Ok(())
+        })
+    }
+}
+
+macro_rules! values {
+    ($($kind:ident: $value:ty, $get:ident, $set:ident, $out:expr, $into:expr;)*) => {$(
+        /// Values of variables of a type.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $get(
+            instance: *mut Instance,
+            references: *const u32,
+            count: usize,
+            values: *mut $value,
+        ) -> Status {
+            unsafe {
+                Instance::call(instance, stringify!($get), &ANY, |own| {
+                    own.get((references, values, count), Type::$kind, $out)
+                })
+            }
+        }
+
+        /// Sets variables of a type.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $set(
+            instance: *mut Instance,
+            references: *const u32,
+            count: usize,
+            values: *const $value,
+        ) -> Status {
+            unsafe {
+                Instance::call(instance, stringify!($set), &SETTABLE, |own| {
+                    own.set((references, values, count), Type::$kind, $into)
+                })
+            }
+        }
+    )*};
+}
+
+values! {
+    Real: f64, fmi2GetReal, fmi2SetReal, |value| value, |value| value;
+    Integer: c_int, fmi2GetInteger, fmi2SetInteger, |value| value as c_int, f64::from;
+    Boolean: Boolean2, fmi2GetBoolean, fmi2SetBoolean, |value| Boolean2::from(value != 0.0), |value| f64::from(u8::from(value != 0));
+}
+
+/// `fmi2GetFMUstate`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetFMUstate(instance: *mut Instance, state: *mut *mut Saved) -> Status {
+    unsafe { Instance::call(instance, "fmi2GetFMUstate", &ANY, |own| own.save(state)) }
+}
+
+/// `fmi2SetFMUstate`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetFMUstate(instance: *mut Instance, state: *mut Saved) -> Status {
+    unsafe { Instance::call(instance, "fmi2SetFMUstate", &ANY, |own| own.restore(state)) }
+}
+
+/// `fmi2FreeFMUstate`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeFMUstate(instance: *mut Instance, state: *mut *mut Saved) -> Status {
+    unsafe { Instance::call(instance, "fmi2FreeFMUstate", &ANY, |own| own.forget(state)) }
+}
+
+/// `fmi2SerializedFMUstateSize`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
+    instance: *mut Instance,
+    state: *mut Saved,
+    size: *mut usize,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2SerializedFMUstateSize", &ANY, |own| {
+            *size = own.serialized(state)?.len();
+            Ok(())
+        })
+    }
+}
+
+/// `fmi2SerializeFMUstate`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SerializeFMUstate(
+    instance: *mut Instance,
+    state: *mut Saved,
+    bytes: *mut u8,
+    size: usize,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2SerializeFMUstate", &ANY, |own| {
+            let found = own.serialized(state)?;
+            if found.len() > size {
+                let needed = found.len();
+                return Err(Refusal::Error(format!("the state takes {needed} bytes, there are {size}")));
+            }
+            ptr::copy_nonoverlapping(found.as_ptr(), bytes, found.len());
+            Ok(())
+        })
+    }
+}
+
+/// `fmi2DeSerializeFMUstate`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
+    instance: *mut Instance,
+    bytes: *const u8,
+    size: usize,
+    state: *mut *mut Saved,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2DeSerializeFMUstate", &ANY, |own| {
+            *state = own.deserialized(slice::from_raw_parts(bytes, size))?;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi2GetRealStatus`: the time that the unit is at.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealStatus(instance: *mut Instance, what: c_int, value: *mut f64) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi2GetRealStatus", &ANY, |own| match what {
+            LAST_SUCCESSFUL_TIME => {
+                *value = own.unit.get(0, Type::Real)?;
+                Ok(())
+            }
+            _ => Err(Refusal::Error("steps end at once: there is no such status".into())),
+        })
+    }
+}
+
+/// Functions for what the unit does not have: they are there, and refuse. Arguments besides the instance are not read.
+macro_rules! refused {
+    ($($name:ident,)*) => {$(
+        /// For what the unit does not have: refuses.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $name(instance: *mut Instance) -> Status {
+            unsafe {
+                Instance::call(instance, stringify!($name), &ANY, |_| {
+                    Err(Refusal::Error("the unit does not have this".into()))
+                })
+            }
+        }
+    )*};
+}
+
+refused! {
+    fmi2GetString,
+    fmi2SetString,
+    fmi2GetDirectionalDerivative,
+    fmi2SetRealInputDerivatives,
+    fmi2GetRealOutputDerivatives,
+    fmi2CancelStep,
+    fmi2GetStatus,
+    fmi2GetIntegerStatus,
+    fmi2GetBooleanStatus,
+    fmi2GetStringStatus,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn resources_are_found_by_their_uri() {
+        for (uri, path) in [
+            ("file:///tmp/my%20unit/resources", "/tmp/my unit/resources"),
+            ("file://localhost/tmp/r", "/tmp/r"),
+            ("/tmp/100%", "/tmp/100%"),
+            ("file:///C:/unit/resources", "C:/unit/resources"),
+        ] {
+            assert_eq!(path_of(uri), PathBuf::from(path), "{uri}");
+        }
+    }
+}

@@ -1,0 +1,412 @@
+//! The C interface of FMI 3.0, co-simulation (`fmi3Functions.h`).
+//!
+//! # Safety
+//! All functions are called as the standard says: instances and states come from this library, arrays have the stated lengths, texts end
+//! with 0.
+#![expect(clippy::missing_safety_doc, reason = "the standard says how these functions are called")]
+#![expect(clippy::too_many_arguments, reason = "the standard's signatures")]
+
+use crate::instance::{Instance, Log, LogMessage3, Logger, Phase, Saved, Status, text};
+use crate::unit::Refusal;
+use crate::variables::Type;
+use std::ffi::{c_char, c_void};
+use std::path::Path;
+use std::ptr;
+use std::slice;
+
+const ANY: [Phase; 4] = [Phase::Instantiated, Phase::Initialization, Phase::Step, Phase::Terminated];
+const SETTABLE: [Phase; 3] = [Phase::Instantiated, Phase::Initialization, Phase::Step];
+
+/// `fmi3GetVersion`.
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi3GetVersion() -> *const c_char {
+    c"3.0".as_ptr()
+}
+
+/// `fmi3InstantiateCoSimulation`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
+    name: *const c_char,
+    token: *const c_char,
+    resources: *const c_char,
+    _visible: bool,
+    logging_on: bool,
+    event_mode_used: bool,
+    early_return_allowed: bool,
+    _intermediate: *const u32,
+    intermediate_count: usize,
+    environment: *mut c_void,
+    log_message: Option<LogMessage3>,
+    _intermediate_update: *const c_void,
+) -> *mut Instance {
+    let logger = log_message.map_or(Logger::Silent, Logger::Three);
+    let log = Log { name: unsafe { text(name) }.to_owned(), logger, environment, is_on: logging_on };
+    if event_mode_used || intermediate_count > 0 {
+        log.write(Status::Error, "the unit has neither an event mode nor intermediate variables");
+        return ptr::null_mut();
+    }
+    let (token, resources) = unsafe { (text(token), text(resources)) };
+    Instance::create(log, token, Path::new(&*resources.to_string_lossy()), early_return_allowed)
+}
+
+/// `fmi3FreeInstance`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3FreeInstance(instance: *mut Instance) {
+    unsafe { Instance::free(instance) };
+}
+
+/// `fmi3SetDebugLogging`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SetDebugLogging(
+    instance: *mut Instance,
+    on: bool,
+    count: usize,
+    categories: *const *const c_char,
+) -> Status {
+    unsafe { Instance::call(instance, "fmi3SetDebugLogging", &ANY, |own| own.set_log(on, categories, count)) }
+}
+
+/// `fmi3EnterInitializationMode`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3EnterInitializationMode(
+    instance: *mut Instance,
+    _tolerance_defined: bool,
+    _tolerance: f64,
+    start: f64,
+    _stop_defined: bool,
+    _stop: f64,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi3EnterInitializationMode", &[Phase::Instantiated], |own| {
+            own.unit.begin(start)?;
+            own.phase = Phase::Initialization;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi3ExitInitializationMode`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3ExitInitializationMode(instance: *mut Instance) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi3ExitInitializationMode", &[Phase::Initialization], |own| {
+            own.phase = Phase::Step;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi3EnterStepMode`: without an event mode the unit is in it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3EnterStepMode(instance: *mut Instance) -> Status {
+    unsafe { Instance::call(instance, "fmi3EnterStepMode", &[Phase::Step], |_| Ok(())) }
+}
+
+/// `fmi3Terminate`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3Terminate(instance: *mut Instance) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi3Terminate", &[Phase::Step], |own| {
+            own.phase = Phase::Terminated;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi3Reset`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3Reset(instance: *mut Instance) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi3Reset", &ANY, |own| {
+            own.unit.reset();
+            own.phase = Phase::Instantiated;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi3DoStep`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3DoStep(
+    instance: *mut Instance,
+    time: f64,
+    step: f64,
+    _no_state_before: bool,
+    event_needed: *mut bool,
+    terminate: *mut bool,
+    early: *mut bool,
+    last_time: *mut f64,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi3DoStep", &[Phase::Step], |own| {
+            let reached = own.unit.step(time, step, own.may_stop)?;
+            for remark in &reached.remarks {
+                own.log.write(Status::Warning, remark);
+            }
+            let write = |place: *mut bool, value| {
+                if let Some(place) = place.as_mut() {
+                    *place = value;
+                }
+            };
+            write(event_needed, false);
+            write(terminate, false);
+            write(early, reached.early);
+            if let Some(place) = last_time.as_mut() {
+                *place = reached.time;
+            }
+            Ok(())
+        })
+    }
+}
+
+fn of_same_length(references: usize, values: usize) -> Result<(), Refusal> {
+    match references == values {
+        true => Ok(()),
+        false => Err(Refusal::Error(format!("{references} variables, but {values} values"))),
+    }
+}
+
+macro_rules! values {
+    ($($kind:ident: $value:ty, $get:ident, $set:ident, $out:expr, $into:expr;)*) => {$(
+        /// Values of variables of a type.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $get(
+            instance: *mut Instance,
+            references: *const u32,
+            count: usize,
+            values: *mut $value,
+            value_count: usize,
+        ) -> Status {
+            unsafe {
+                Instance::call(instance, stringify!($get), &ANY, |own| {
+                    of_same_length(count, value_count)?;
+                    own.get((references, values, count), Type::$kind, $out)
+                })
+            }
+        }
+
+        /// Sets variables of a type.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $set(
+            instance: *mut Instance,
+            references: *const u32,
+            count: usize,
+            values: *const $value,
+            value_count: usize,
+        ) -> Status {
+            unsafe {
+                Instance::call(instance, stringify!($set), &SETTABLE, |own| {
+                    of_same_length(count, value_count)?;
+                    own.set((references, values, count), Type::$kind, $into)
+                })
+            }
+        }
+    )*};
+}
+
+values! {
+    Real: f64, fmi3GetFloat64, fmi3SetFloat64, |value| value, |value| value;
+    Integer: i32, fmi3GetInt32, fmi3SetInt32, |value| value as i32, f64::from;
+    Boolean: bool, fmi3GetBoolean, fmi3SetBoolean, |value| value != 0.0, |value| f64::from(u8::from(value));
+}
+
+/// `fmi3GetFMUState`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetFMUState(instance: *mut Instance, state: *mut *mut Saved) -> Status {
+    unsafe { Instance::call(instance, "fmi3GetFMUState", &ANY, |own| own.save(state)) }
+}
+
+/// `fmi3SetFMUState`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SetFMUState(instance: *mut Instance, state: *mut Saved) -> Status {
+    unsafe { Instance::call(instance, "fmi3SetFMUState", &ANY, |own| own.restore(state)) }
+}
+
+/// `fmi3FreeFMUState`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3FreeFMUState(instance: *mut Instance, state: *mut *mut Saved) -> Status {
+    unsafe { Instance::call(instance, "fmi3FreeFMUState", &ANY, |own| own.forget(state)) }
+}
+
+/// `fmi3SerializedFMUStateSize`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SerializedFMUStateSize(
+    instance: *mut Instance,
+    state: *mut Saved,
+    size: *mut usize,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi3SerializedFMUStateSize", &ANY, |own| {
+            *size = own.serialized(state)?.len();
+            Ok(())
+        })
+    }
+}
+
+/// `fmi3SerializeFMUState`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SerializeFMUState(
+    instance: *mut Instance,
+    state: *mut Saved,
+    bytes: *mut u8,
+    size: usize,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi3SerializeFMUState", &ANY, |own| {
+            let found = own.serialized(state)?;
+            of_same_length(found.len(), size)?;
+            ptr::copy_nonoverlapping(found.as_ptr(), bytes, size);
+            Ok(())
+        })
+    }
+}
+
+/// `fmi3DeserializeFMUState`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3DeserializeFMUState(
+    instance: *mut Instance,
+    bytes: *const u8,
+    size: usize,
+    state: *mut *mut Saved,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi3DeserializeFMUState", &ANY, |own| {
+            *state = own.deserialized(slice::from_raw_parts(bytes, size))?;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi3GetNumberOfVariableDependencies`: outputs depend on nothing at a communication point.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
+    instance: *mut Instance,
+    _reference: u32,
+    count: *mut usize,
+) -> Status {
+    unsafe {
+        Instance::call(instance, "fmi3GetNumberOfVariableDependencies", &ANY, |_| {
+            *count = 0;
+            Ok(())
+        })
+    }
+}
+
+/// `fmi3GetVariableDependencies`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetVariableDependencies(
+    instance: *mut Instance,
+    _dependent: u32,
+    _elements: *const c_void,
+    _independents: *const c_void,
+    _others: *const c_void,
+    _kinds: *const c_void,
+    count: usize,
+) -> Status {
+    unsafe { Instance::call(instance, "fmi3GetVariableDependencies", &ANY, |_| of_same_length(0, count)) }
+}
+
+/// `fmi3InstantiateModelExchange`: there is none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3InstantiateModelExchange(
+    _name: *const c_char,
+    _token: *const c_char,
+    _resources: *const c_char,
+    _visible: bool,
+    _logging_on: bool,
+    environment: *mut c_void,
+    log_message: Option<LogMessage3>,
+) -> *mut Instance {
+    only_co_simulation(environment, log_message)
+}
+
+/// `fmi3InstantiateScheduledExecution`: there is none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
+    _name: *const c_char,
+    _token: *const c_char,
+    _resources: *const c_char,
+    _visible: bool,
+    _logging_on: bool,
+    environment: *mut c_void,
+    log_message: Option<LogMessage3>,
+    _clock_update: *const c_void,
+    _lock: *const c_void,
+    _unlock: *const c_void,
+) -> *mut Instance {
+    only_co_simulation(environment, log_message)
+}
+
+fn only_co_simulation(environment: *mut c_void, log_message: Option<LogMessage3>) -> *mut Instance {
+    let logger = log_message.map_or(Logger::Silent, Logger::Three);
+    let log = Log { name: c"".to_owned(), logger, environment, is_on: true };
+    log.write(Status::Error, "the unit is for co-simulation only");
+    ptr::null_mut()
+}
+
+/// Functions for what the unit does not have: they are there, and refuse. Arguments besides the instance are not read.
+macro_rules! refused {
+    ($($name:ident,)*) => {$(
+        /// For what the unit does not have: refuses.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $name(instance: *mut Instance) -> Status {
+            unsafe {
+                Instance::call(instance, stringify!($name), &ANY, |_| {
+                    Err(Refusal::Error("the unit does not have this".into()))
+                })
+            }
+        }
+    )*};
+}
+
+refused! {
+    fmi3EnterEventMode,
+    fmi3EnterConfigurationMode,
+    fmi3ExitConfigurationMode,
+    fmi3GetFloat32,
+    fmi3GetInt8,
+    fmi3GetUInt8,
+    fmi3GetInt16,
+    fmi3GetUInt16,
+    fmi3GetUInt32,
+    fmi3GetInt64,
+    fmi3GetUInt64,
+    fmi3GetString,
+    fmi3GetBinary,
+    fmi3GetClock,
+    fmi3SetFloat32,
+    fmi3SetInt8,
+    fmi3SetUInt8,
+    fmi3SetInt16,
+    fmi3SetUInt16,
+    fmi3SetUInt32,
+    fmi3SetInt64,
+    fmi3SetUInt64,
+    fmi3SetString,
+    fmi3SetBinary,
+    fmi3SetClock,
+    fmi3GetDirectionalDerivative,
+    fmi3GetAdjointDerivative,
+    fmi3GetIntervalDecimal,
+    fmi3GetIntervalFraction,
+    fmi3GetShiftDecimal,
+    fmi3GetShiftFraction,
+    fmi3SetIntervalDecimal,
+    fmi3SetIntervalFraction,
+    fmi3SetShiftDecimal,
+    fmi3SetShiftFraction,
+    fmi3EvaluateDiscreteStates,
+    fmi3UpdateDiscreteStates,
+    fmi3EnterContinuousTimeMode,
+    fmi3CompletedIntegratorStep,
+    fmi3SetTime,
+    fmi3SetContinuousStates,
+    fmi3GetContinuousStateDerivatives,
+    fmi3GetEventIndicators,
+    fmi3GetContinuousStates,
+    fmi3GetNominalsOfContinuousStates,
+    fmi3GetNumberOfEventIndicators,
+    fmi3GetNumberOfContinuousStates,
+    fmi3GetOutputDerivatives,
+    fmi3ActivateModelPartition,
+}

@@ -1,0 +1,288 @@
+//! The unit: its variables, its state, its steps.
+
+use crate::impact::Impact;
+use crate::source::Source;
+use crate::variables::{Output, Role, Type, Variable, variables};
+use impactcheck_physics::kinds::{self, Series};
+use impactcheck_physics::scene::Field;
+use impactcheck_physics::{Error, Result};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Numbers of a stack that are those at its voltage, and grow with it.
+const AT_THE_VOLTAGE: [&str; 2] = ["outer.stroke", "outer.blocked_force"];
+/// Difference of two times over the communication step that is taken as rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// Why a call is not carried out, in a sentence.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Refusal {
+    /// The value or the scene is not possible. The unit is as before, and other values may do.
+    Discard(String),
+    /// The call itself is wrong.
+    Error(String),
+}
+
+type Done<T = ()> = std::result::Result<T, Refusal>;
+
+fn wrong<T>(reason: impl Into<String>) -> Done<T> {
+    Err(Refusal::Error(reason.into()))
+}
+
+/// An impact that was launched.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Launched {
+    /// Simulation time of the launch, s.
+    time: f64,
+    /// Values of all variables then.
+    values: Vec<f64>,
+    /// What came of it; computed again where a state comes from a file.
+    #[serde(skip)]
+    impact: Option<Arc<Impact>>,
+}
+
+/// All that changes of a unit.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct State {
+    /// Token of the unit that it belongs to.
+    token: String,
+    /// Values of parameters and inputs, by value reference.
+    values: Vec<f64>,
+    /// Simulation time, s.
+    time: f64,
+    /// Whether the next edge of `launch` launches.
+    armed: bool,
+    /// `arm` and `launch` at the last step.
+    before: [bool; 2],
+    launched: Option<Launched>,
+}
+
+/// Where a step ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reached {
+    /// Simulation time, s.
+    pub time: f64,
+    /// Whether that is before the end of the step, at a first touch or a last release.
+    pub early: bool,
+    /// What the user has to know: the warnings of an impact that was launched, a launch that was ignored.
+    pub remarks: Vec<String>,
+}
+
+/// A scene's reduced model that a simulation steps through time.
+#[derive(Debug)]
+pub struct Unit {
+    source: Source,
+    series: Box<dyn Series>,
+    variables: Vec<Variable>,
+    state: State,
+}
+
+impl Unit {
+    /// The unit of `source`, at rest at time 0.
+    ///
+    /// # Errors
+    /// Those of a seat's mesh.
+    pub fn new(source: Source) -> Result<Self> {
+        let variables = variables(&source.template);
+        let state = State {
+            token: source.setup.token.clone(),
+            values: variables.iter().map(|variable| variable.start).collect(),
+            time: 0.0,
+            armed: false,
+            before: [false; 2],
+            launched: None,
+        };
+        let series = kinds::series([], source.template.scene(), source.mesh.as_ref(), 1)?;
+        Ok(Self { source, series, variables, state })
+    }
+
+    /// Its variables, by value reference.
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// Its state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Puts it into a `state` that it, or another instance of the same unit, was in.
+    ///
+    /// # Errors
+    /// [`Refusal::Error`] of a state of another unit; [`Refusal::Discard`] of one whose impact can't be computed.
+    pub fn set_state(&mut self, mut state: State) -> Done {
+        if state.token != self.state.token || state.values.len() != self.variables.len() {
+            return wrong(format!(
+                "the state belongs to another unit: its token is {}, that of this unit {}",
+                state.token, self.state.token
+            ));
+        }
+        if let Some(launched) = state.launched.as_mut().filter(|launched| launched.impact.is_none()) {
+            launched.impact = Some(Arc::new(self.impact_of(&launched.values)?));
+        }
+        self.state = state;
+        Ok(())
+    }
+
+    /// Begins at `time` s.
+    ///
+    /// # Errors
+    /// [`Refusal::Error`] if it is not finite.
+    pub fn begin(&mut self, time: f64) -> Done {
+        if !time.is_finite() {
+            return wrong(format!("the start time is {time}, but it must be finite"));
+        }
+        self.state.time = time;
+        Ok(())
+    }
+
+    /// Back to the values of the start, at rest at time 0.
+    pub fn reset(&mut self) {
+        self.state = State {
+            token: self.state.token.clone(),
+            values: self.variables.iter().map(|variable| variable.start).collect(),
+            time: 0.0,
+            armed: false,
+            before: [false; 2],
+            launched: None,
+        };
+    }
+
+    fn variable(&self, reference: u32, kind: Type) -> Done<&Variable> {
+        let Some(variable) = self.variables.get(reference as usize) else {
+            let last = self.variables.len() - 1;
+            return wrong(format!(
+                "there is no variable with the value reference {reference}; they are 0 to {last}"
+            ));
+        };
+        match variable.kind == kind {
+            true => Ok(variable),
+            false => wrong(format!(
+                "`{}` (value reference {reference}) is of type {:?}, not {kind:?}",
+                variable.name, variable.kind
+            )),
+        }
+    }
+
+    /// The value of a variable, a truth as 0 or 1.
+    ///
+    /// # Errors
+    /// [`Refusal::Error`] if there is no such variable of this type.
+    pub fn get(&self, reference: u32, kind: Type) -> Done<f64> {
+        Ok(match self.variable(reference, kind)?.role {
+            Role::Time => self.state.time,
+            Role::Output(output) => self.output(output),
+            _ => self.state.values[reference as usize],
+        })
+    }
+
+    fn output(&self, output: Output) -> f64 {
+        let Some(launched) = &self.state.launched else { return 0.0 };
+        let Some(impact) = &launched.impact else { return 0.0 };
+        let since = self.state.time - launched.time;
+        impact.value(&self.source, &*self.series, output, launched.time, since)
+    }
+
+    /// Sets a parameter or an input, a truth as 0 or 1.
+    ///
+    /// # Errors
+    /// [`Refusal::Error`] if there is no such parameter or input of this type; [`Refusal::Discard`] of a number out of bounds.
+    pub fn set(&mut self, reference: u32, kind: Type, value: f64) -> Done {
+        let variable = self.variable(reference, kind)?;
+        match &variable.role {
+            Role::Time => return wrong("`time` can't be set: steps advance it"),
+            Role::Output(_) => return wrong(format!("`{}` is an output and can't be set", variable.name)),
+            Role::Field(field) | Role::Voltage(field) => {
+                field.check(value).map_err(|rejected| Refusal::Discard(rejected.to_string()))?;
+            }
+            Role::Arm | Role::Launch => {}
+        }
+        self.state.values[reference as usize] = value;
+        Ok(())
+    }
+
+    /// Steps from `time` by `step` s. With `may_stop` the step ends at a first touch or a last release within it.
+    ///
+    /// # Errors
+    /// [`Refusal::Error`] of a step that is not positive, or does not begin where the last one ended; [`Refusal::Discard`] if an impact is
+    /// launched that can't be computed.
+    pub fn step(&mut self, time: f64, step: f64, may_stop: bool) -> Done<Reached> {
+        if !(step > 0.0 && step.is_finite()) {
+            return wrong(format!("the communication step is {step} s, but it must be greater than 0 s"));
+        }
+        let own = self.state.time;
+        if !((time - own).abs() <= ROUNDING * step + 4.0 * f64::EPSILON * own.abs()) {
+            return wrong(format!(
+                "the communication point is {time} s, but the unit is at {own} s: a step begins where the last one ended"
+            ));
+        }
+        let mut next = self.state.clone();
+        let mut remarks = Vec::new();
+        let on = |role: fn(&Role) -> bool| {
+            let found = self.variables.iter().position(|variable| role(&variable.role));
+            found.is_some_and(|reference| next.values[reference] != 0.0)
+        };
+        let now = [on(|role| matches!(role, Role::Arm)), on(|role| matches!(role, Role::Launch))];
+        let [arms, launches] = [0, 1].map(|k| now[k] && !next.before[k]);
+        next.before = now;
+        next.armed &= now[0];
+        if arms {
+            (next.armed, next.launched) = (true, None);
+        }
+        if launches && next.armed {
+            let impact = self.impact_of(&next.values)?;
+            remarks.extend(impact.summary().warnings.iter().cloned());
+            let values = next.values.clone();
+            next.launched = Some(Launched { time, values, impact: Some(Arc::new(impact)) });
+            next.armed = false;
+        } else if launches {
+            remarks
+                .push("the launch is ignored: set `arm` to false and to true again after an impact".into());
+        }
+        let end = time + step;
+        let event = next.launched.as_ref().and_then(|launched| launched.event_within(time, end));
+        let early = event.filter(|_| may_stop);
+        next.time = early.unwrap_or(end);
+        self.state = next;
+        Ok(Reached { time: self.state.time, early: early.is_some(), remarks })
+    }
+
+    /// The impact of the scene with these `values` of the variables.
+    fn impact_of(&self, values: &[f64]) -> Done<Impact> {
+        let scene = self.source.template.with(&self.numbers(values));
+        let scene = scene.map_err(|rejected| Refusal::Discard(rejected.to_string()))?;
+        let failed = |error: Error| Refusal::Discard(format!("the impact can't be computed: {error}"));
+        Impact::new(&self.source, &*self.series, scene).map_err(failed)
+    }
+
+    /// The fields that differ from the scene file's, with their numbers.
+    fn numbers(&self, values: &[f64]) -> Vec<(&Field, f64)> {
+        let factor = self.variables.iter().zip(values).find_map(|(variable, value)| match variable.role {
+            Role::Voltage(_) if variable.start != 0.0 => Some(value / variable.start),
+            _ => None,
+        });
+        self.variables
+            .iter()
+            .zip(values)
+            .filter_map(|(variable, value)| match &variable.role {
+                Role::Field(field) | Role::Voltage(field) => {
+                    let grows = AT_THE_VOLTAGE.contains(&field.path());
+                    Some((field, value * factor.filter(|_| grows).unwrap_or(1.0), variable.start))
+                }
+                _ => None,
+            })
+            .filter(|(_, value, start)| value != start)
+            .map(|(field, value, _)| (field, value))
+            .collect()
+    }
+}
+
+impl Launched {
+    /// The first touch or last release strictly between two times, the earlier one.
+    fn event_within(&self, start: f64, end: f64) -> Option<f64> {
+        let impact = self.impact.as_ref()?;
+        let touch = self.time + impact.delay();
+        let events = [touch, touch + impact.duration()];
+        events.into_iter().find(|event| start < *event && *event < end)
+    }
+}
