@@ -20,9 +20,10 @@ from .common.settings import SOLVERS
 from .flight import FLIGHTS
 from .kinds import commands_of, studies
 from .records.command import COLUMNS
+from .units.command import UNIT
 
 RESOLUTION_NAMES = ("coarse", "paper", "fine")
-STUDIES = {**studies(), "flights": FLIGHTS, "columns": COLUMNS}
+STUDIES = {**studies(), "flights": FLIGHTS, "columns": COLUMNS, "unit": UNIT}
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -133,6 +133,8 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(instance: *mut Instance) ->
 pub unsafe extern "C" fn fmi2ExitInitializationMode(instance: *mut Instance) -> Status {
     unsafe {
         Instance::call(instance, "fmi2ExitInitializationMode", &[Phase::Initialization], |own| {
+            let remarks = own.unit.start()?;
+            own.log.remark(&remarks);
             own.phase = Phase::Step;
             Ok(())
         })
@@ -172,9 +174,8 @@ pub unsafe extern "C" fn fmi2DoStep(
 ) -> Status {
     unsafe {
         Instance::call(instance, "fmi2DoStep", &[Phase::Step], |own| {
-            for remark in own.unit.step(time, step, false)?.remarks {
-                own.log.write(Status::Warning, &remark);
-            }
+            let reached = own.unit.step(time, step, false)?;
+            own.log.remark(&reached.remarks);
             Ok(())
         })
     }

@@ -90,6 +90,8 @@ pub unsafe extern "C" fn fmi3EnterInitializationMode(
 pub unsafe extern "C" fn fmi3ExitInitializationMode(instance: *mut Instance) -> Status {
     unsafe {
         Instance::call(instance, "fmi3ExitInitializationMode", &[Phase::Initialization], |own| {
+            let remarks = own.unit.start()?;
+            own.log.remark(&remarks);
             own.phase = Phase::Step;
             Ok(())
         })
@@ -140,9 +142,7 @@ pub unsafe extern "C" fn fmi3DoStep(
     unsafe {
         Instance::call(instance, "fmi3DoStep", &[Phase::Step], |own| {
             let reached = own.unit.step(time, step, own.may_stop)?;
-            for remark in &reached.remarks {
-                own.log.write(Status::Warning, remark);
-            }
+            own.log.remark(&reached.remarks);
             let write = |place: *mut bool, value| {
                 if let Some(place) = place.as_mut() {
                     *place = value;

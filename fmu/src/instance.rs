@@ -75,6 +75,11 @@ pub struct Log {
 }
 
 impl Log {
+    /// Passes on what the user has to know.
+    pub fn remark(&self, remarks: &[String]) {
+        remarks.iter().for_each(|remark| self.write(Status::Warning, remark));
+    }
+
     /// Passes `message` on.
     pub fn write(&self, status: Status, message: &str) {
         let is_error = matches!(status, Status::Error | Status::Fatal | Status::Discard);

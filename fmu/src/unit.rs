@@ -208,14 +208,35 @@ impl Unit {
     /// launched that can't be computed.
     pub fn step(&mut self, time: f64, step: f64, may_stop: bool) -> Done<Reached> {
         if !(step > 0.0 && step.is_finite()) {
-            return wrong(format!("the communication step is {step} s, but it must be greater than 0 s"));
+            return wrong(format!("the communication step is {step:?} s, but it must be greater than 0 s"));
         }
         let own = self.state.time;
         if !((time - own).abs() <= ROUNDING * step + 4.0 * f64::EPSILON * own.abs()) {
             return wrong(format!(
-                "the communication point is {time} s, but the unit is at {own} s: a step begins where the last one ended"
+                "the communication point is {time:?} s, but the unit is at {own:?} s: a step begins where the last one ended"
             ));
         }
+        let (mut next, remarks) = self.with_edges(time)?;
+        let end = time + step;
+        let event = next.launched.as_ref().and_then(|launched| launched.event_within(time, end));
+        let early = event.filter(|_| may_stop);
+        next.time = early.unwrap_or(end);
+        self.state = next;
+        Ok(Reached { time: self.state.time, early: early.is_some(), remarks })
+    }
+
+    /// Ends the initialization: a launch that is set already begins now. What the user has to know of it.
+    ///
+    /// # Errors
+    /// [`Refusal::Discard`] of an impact that can't be computed.
+    pub fn start(&mut self) -> Done<Vec<String>> {
+        let (next, remarks) = self.with_edges(self.state.time)?;
+        self.state = next;
+        Ok(remarks)
+    }
+
+    /// The state after the edges of `arm` and `launch` at `time` s, and what the user has to know of them.
+    fn with_edges(&self, time: f64) -> Done<(State, Vec<String>)> {
         let mut next = self.state.clone();
         let mut remarks = Vec::new();
         let on = |role: fn(&Role) -> bool| {
@@ -239,12 +260,7 @@ impl Unit {
             remarks
                 .push("the launch is ignored: set `arm` to false and to true again after an impact".into());
         }
-        let end = time + step;
-        let event = next.launched.as_ref().and_then(|launched| launched.event_within(time, end));
-        let early = event.filter(|_| may_stop);
-        next.time = early.unwrap_or(end);
-        self.state = next;
-        Ok(Reached { time: self.state.time, early: early.is_some(), remarks })
+        Ok((next, remarks))
     }
 
     /// The impact of the scene with these `values` of the variables.

@@ -181,7 +181,10 @@ pub fn variables(template: &Template) -> Vec<Variable> {
     let quantities = || kind.quantities().iter().filter(|quantity| kind.has(scene, quantity.name));
     for quantity in quantities() {
         let of = if quantity.is_count { Integer } else { Real };
-        output(quantity.name.into(), quantity.unit, of, Output::Quantity(quantity));
+        // a curve of a body may have the name already
+        let is_taken = kind.curves().iter().any(|curve| curve.name == quantity.name);
+        let name = quantity.name.to_owned() + if is_taken { "_final" } else { "" };
+        output(name, quantity.unit, of, Output::Quantity(quantity));
     }
     if scene.flight.is_some() {
         output("shifts".into(), "1", Boolean, Output::Shifts);

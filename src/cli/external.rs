@@ -16,7 +16,7 @@ const SAMPLE_INTERVAL: f64 = 1e-7;
 /// The user's leave.
 #[derive(Debug, Clone, Copy, Args)]
 pub(super) struct Permission {
-    /// Run the programs under [[external]] of the scenes (or set IMPACTCHECK_ALLOW_EXTERNAL=1). Caution: a scene can
+    /// Run the programs and units under [[external]] of the scenes (or set IMPACTCHECK_ALLOW_EXTERNAL=1). Caution: a scene can
     /// name any program
     #[arg(long)]
     pub(super) allow_external: bool,
@@ -41,9 +41,9 @@ impl Permission {
         match programs.next() {
             None => Ok(()),
             Some((file, program)) => Err(Error::Usage(format!(
-                "{} wants to run the program `{}` as model `{}`; a scene file can name any program, so nothing was run: if you trust this one, add --allow-external (or set {ALLOW_VARIABLE}=1), or leave such models out with --models A,B,C",
+                "{} wants to run the {} as model `{}`; a scene file can name any program or unit, so nothing was run: if you trust this one, add --allow-external (or set {ALLOW_VARIABLE}=1), or leave such models out with --models A,B,C",
                 file.display(),
-                program.command.join(" "),
+                program.program.in_words(),
                 program.name
             ))),
         }

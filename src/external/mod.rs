@@ -1,4 +1,4 @@
-//! Programs of the user's as models: one run with the scene on its standard input, its answer as a result like any other.
+//! Programs and units of the user's as models: one run with the scene on its standard input, its answer as a result like any other.
 //!
 //! Whatever a program does, a run of it ends with an [`Outcome`]: one that fails has none of the quantities and says why
 //! in [`Summary::failure`], so that nothing else is stopped by it.
@@ -9,12 +9,15 @@ mod process;
 pub use answer::{assembled, summary};
 
 use crate::kinds;
+use crate::reference;
 use crate::result::{History, Outcome, SCHEMA_VERSION, Source, Summary, Table};
-use crate::scene::{External, Scene};
+use crate::scene::{External, ExternalProgram, Scene};
 use process::{MOST_BYTES, Said};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 /// Lines of a program's standard error that are told.
@@ -55,11 +58,30 @@ fn run_program(
     folder: &Path,
     sample_interval: f64,
 ) -> Result<(Summary, History), String> {
-    let question = question(scene, sample_interval).map_err(|e| format!("the scene as JSON: {e}"))?;
+    let mut question = question(scene, sample_interval).map_err(|e| format!("the scene as JSON: {e}"))?;
     // no folder in the name of a file means the current one
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let command = match &program.program {
+        ExternalProgram::Command { command } => command_in(folder, command),
+        ExternalProgram::Unit { fmu, variables, start, interface } => {
+            let file = folder.join(fmu);
+            if !file.is_file() {
+                return Err(format!("there is no unit {}", file.display()));
+            }
+            let file = std::path::absolute(&file).unwrap_or(file);
+            let kind = kinds::of(scene);
+            let curves: BTreeMap<_, _> = kind.curves().iter().map(|curve| (curve.name, curve.unit)).collect();
+            let mut units = curves.clone();
+            units.extend(kind.quantities().iter().map(|quantity| (quantity.name, quantity.unit)));
+            let curves: Vec<_> = curves.into_keys().collect();
+            question["unit"] = json!({
+                "file": file, "variables": variables, "start": start, "curves": curves, "units": units, "interface": interface,
+            });
+            reference::unit_runner().map_err(|e| e.to_string())?
+        }
+    };
     let limit = Duration::from_secs_f64(program.timeout);
-    let said = process::run(&program.command, folder, format!("{question}\n").into_bytes(), limit);
+    let said = process::run(command, format!("{question}\n").into_bytes(), limit);
     let Said { output, log, status } = said.map_err(|error| cannot_run(program, folder, &error))?;
     let whole = output.len() as u64 <= MOST_BYTES;
     match status {
@@ -72,8 +94,23 @@ fn run_program(
     .map_err(|reason| reason + &last_lines(&log))
 }
 
+/// The program and the arguments `words`, to be run in `folder`.
+fn command_in(folder: &Path, words: &[String]) -> Command {
+    let program = words.first().map_or("", String::as_str);
+    // what has a slash is found from the folder it runs in, as in a shell
+    let mut command = match program.contains('/') {
+        true => Command::new(folder.join(program)),
+        false => Command::new(program),
+    };
+    command.args(words.get(1..).unwrap_or_default()).current_dir(folder);
+    command
+}
+
 fn cannot_run(program: &External, folder: &Path, error: &std::io::Error) -> String {
-    let command = program.command.first().map_or("", String::as_str);
+    let command = match &program.program {
+        ExternalProgram::Command { command } => command.first().map_or("", String::as_str),
+        ExternalProgram::Unit { fmu, .. } => fmu,
+    };
     match error.kind() {
         ErrorKind::NotFound => {
             format!("there is no program `{command}` on PATH or in {}", folder.display())

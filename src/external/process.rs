@@ -3,7 +3,6 @@
 use crate::interrupt::Running;
 use crate::process_output::tail;
 use std::io::{Read, Write};
-use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread::{sleep, spawn};
@@ -27,22 +26,12 @@ pub(super) struct Said {
     pub(super) status: Option<ExitStatus>,
 }
 
-/// Runs `command` in `folder` with `input` on its standard input, for at most `limit`.
+/// Runs `command` with `input` on its standard input, for at most `limit`.
 ///
 /// # Errors
 /// What the system says if the program can't be started or waited for; [`std::io::ErrorKind::TimedOut`] if its output does
 /// not end with it, because something that it has started and that is no longer in its group holds it open.
-pub(super) fn run(
-    command: &[String],
-    folder: &Path,
-    input: Vec<u8>,
-    limit: Duration,
-) -> std::io::Result<Said> {
-    let (program, arguments) = command.split_first().ok_or(std::io::ErrorKind::InvalidInput)?;
-    // what has a slash is found from the folder it runs in, as in a shell
-    let program = if program.contains('/') { folder.join(program) } else { program.into() };
-    let mut command = Command::new(program);
-    command.args(arguments).current_dir(folder);
+pub(super) fn run(mut command: Command, input: Vec<u8>, limit: Duration) -> std::io::Result<Said> {
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut running = Running::start_group(&mut command)?;
     let (stdin, stdout, stderr) =
@@ -92,7 +81,9 @@ mod tests {
     use std::io::ErrorKind;
 
     fn shell(line: &str) -> std::io::Result<Said> {
-        run(&["sh", "-c", line].map(String::from), Path::new("."), Vec::new(), Duration::from_secs(20))
+        let mut command = Command::new("sh");
+        command.args(["-c", line]);
+        run(command, Vec::new(), Duration::from_secs(20))
     }
 
     /// What is in the program's group ends with it; what is not can hold its output, and nobody waits for that.

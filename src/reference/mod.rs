@@ -31,7 +31,7 @@ pub use fields::FieldMesh;
 pub use identity::{revision, settings_hash};
 pub use import::{Imported, read_import};
 pub use kinds::*;
-pub use python::{prefer_python, python};
+pub use python::{prefer_python, python, unit_runner};
 pub use records::{record_bytes, record_source};
 pub use section::MeshSection;
 pub use solid_stress::SolidStress;

@@ -27,6 +27,8 @@ enum Purpose {
     Meshes,
     /// Records in binary formats.
     Records,
+    /// Functional Mock-up Units.
+    Units,
 }
 
 impl Purpose {
@@ -36,6 +38,7 @@ impl Purpose {
             Purpose::References => None,
             Purpose::Meshes => Some(&["gmsh", "meshio", "numpy", "scipy"]),
             Purpose::Records => Some(&["numpy", "scipy"]),
+            Purpose::Units => Some(&["fmpy", "numpy"]),
         }
     }
 
@@ -57,6 +60,10 @@ impl Purpose {
             Purpose::Records => [
                 "a record in a binary format needs a Python that imports numpy and scipy",
                 "install them with `pip install numpy scipy pyuff npTDMS h5py pyarrow`, or export the record as text (CSV)",
+            ],
+            Purpose::Units => [
+                "a unit needs a Python that imports fmpy",
+                "install it with `pip install \"impactcheck[fmu]\"` or `pip install fmpy`",
             ],
         }
     }
@@ -153,6 +160,16 @@ pub(super) fn mesher() -> Result<PathBuf> {
 /// As [`python`].
 pub(super) fn reader() -> Result<PathBuf> {
     found_for(Purpose::Records)
+}
+
+/// The command that runs a unit, which is described on its standard input.
+///
+/// # Errors
+/// As [`python`], for FMPy.
+pub fn unit_runner() -> Result<Command> {
+    let mut command = fem_reference(&found_for(Purpose::Units)?)?;
+    command.arg("unit");
+    Ok(command)
 }
 
 fn found_for(purpose: Purpose) -> Result<PathBuf> {

@@ -47,9 +47,17 @@ pub(super) fn needed(kind: &Kind, path: &str) -> (&'static str, String) {
             ),
         ),
         Kind::Tables(..) => ("a list of tables", "write a list like [{ key = value }]".to_owned()),
-        Kind::Materials => (
+        Kind::Named(Field { kind: Kind::Material, .. }) => (
             "a table of materials by group",
             "write materials like { \"name of a group\" = \"steel\" }".to_owned(),
+        ),
+        Kind::Named(Field { key, .. }) => {
+            ("a table", format!("write entries like {{ \"name\" = ... }}, each with its {key}"))
+        }
+        Kind::Start => (
+            "a number, true or false, or a text",
+            "write a number, true, false, or the path of a number of the scene, for example \"outer.speed\""
+                .to_owned(),
         ),
         Kind::Flag => ("true or false", "write true or false, without quotes".to_owned()),
         Kind::Table(_) | Kind::TableOf(_) | Kind::Tolerances | Kind::Uncertainty => {

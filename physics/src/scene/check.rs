@@ -2,12 +2,15 @@
 
 use super::advice::{alternatives, chosen, example, half_of_it, needed};
 use super::fault::{Collector, did_you_mean};
-use super::grammar::{BODY_MATERIAL, Bound, DEFAULT_GEOMETRY, Field, Kind};
+use super::grammar::{Bound, DEFAULT_GEOMETRY, Field, Kind, pure, required};
 use super::place::Place;
 use super::quantity::{self, Dimension, QuantityError};
 use super::values::{Checked, PLACE, Values};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+/// A number without unit.
+static NUMBER: Field = required("number", pure(Bound::ANY), "A number");
 
 /// Checks one file.
 pub(super) struct Checker<'a> {
@@ -147,7 +150,10 @@ impl<'a> Checker<'a> {
             (Kind::Count(low, high), _) => self.count(place, value, *low, *high),
             (Kind::Flag, DeValue::Boolean(flag)) => Some(Checked::Flag(*flag)),
             (Kind::Material, DeValue::String(text)) => self.material(place, value, text),
-            (Kind::Materials, DeValue::Table(names)) => self.materials(place, value, names),
+            (Kind::Named(field), DeValue::Table(names)) => self.named(place, value, names, field),
+            (Kind::Start, DeValue::Boolean(flag)) => Some(Checked::Flag(*flag)),
+            (Kind::Start, DeValue::String(path)) => Some(Checked::Text(path.to_string())),
+            (Kind::Start, DeValue::Integer(_) | DeValue::Float(_)) => self.value(place, value, &NUMBER),
             (Kind::Quantities(dimension, bound, most), DeValue::Array(items)) => {
                 self.quantities(place, value, items, (*dimension, *bound), *most)
             }
@@ -270,16 +276,22 @@ impl<'a> Checker<'a> {
         self.fault(place, value, "which is not a material of this scene", "unknown material", help)
     }
 
-    fn materials(&mut self, place: &Place, value: &Spanned<DeValue>, names: &DeTable) -> Option<Checked> {
-        if names.is_empty() {
-            let help = needed(&Kind::Materials, "").1;
-            return self.fault(place, value, "but it names no group", "empty", help);
+    fn named(
+        &mut self,
+        place: &Place,
+        value: &Spanned<DeValue>,
+        entries: &DeTable,
+        field: &'static Field,
+    ) -> Option<Checked> {
+        if entries.is_empty() {
+            let help = needed(&Kind::Named(field), "").1;
+            return self.fault(place, value, "but it has no entry", "empty", help);
         }
         let mut found = Values::new();
-        for (key, name) in names {
+        for (key, entry) in entries {
             let path = place.key(key.get_ref());
-            let material = self.value(&Place { path: &path, span: key.span() }, name, &BODY_MATERIAL);
-            found.extend(material.map(|material| (key.get_ref().to_string(), material)));
+            let checked = self.value(&Place { path: &path, span: key.span() }, entry, field);
+            found.extend(checked.map(|checked| (key.get_ref().to_string(), checked)));
         }
         Some(Checked::Table(found))
     }

@@ -1,12 +1,13 @@
-//! `[[external]]`: programs of the user's that solve the scene too.
+//! `[[external]]`: programs and units of the user's that solve the scene too.
 
 use super::check::Checker;
-use super::grammar::{Field, Kind, MODELS, optional, positive, required};
+use super::grammar::{Choice, Field, Kind, MODELS, choice, one_way, optional, positive, required};
 use super::place::Place;
 use super::quantity::Dimension;
-use super::values::Node;
-use crate::Result;
+use super::values::{Checked, Node, Values};
+use crate::{Error, Result};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use toml::de::DeTable;
 
 /// Most words of a command.
@@ -16,35 +17,167 @@ const DEFAULT_TIMEOUT: f64 = 60.0;
 /// Names, besides those of reduced models, that mean something else among models.
 const TAKEN: [&str; 3] = ["auto", "external", "reference"];
 
-/// A program that is a model of the scene: it reads the scene as JSON and answers with a result.
+/// A program or a unit that is a model of the scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct External {
     /// The model's name in results, reports and tolerances.
     pub name: String,
-    /// The program and its arguments; never a shell's line.
-    pub command: Vec<String>,
+    /// What runs.
+    #[serde(flatten)]
+    pub program: ExternalProgram,
     /// Time in s after which the program is ended.
     pub timeout: f64,
 }
 
+/// What solves the scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum ExternalProgram {
+    /// A program that reads the scene as JSON and answers with a result.
+    Command {
+        /// The program and its arguments; never a shell's line.
+        command: Vec<String>,
+    },
+    /// A Functional Mock-up Unit.
+    Unit {
+        /// Its file.
+        fmu: String,
+        /// Its variables by the quantities and curves of the scene that they are.
+        variables: BTreeMap<String, String>,
+        /// What its variables are at the start, by their names.
+        start: BTreeMap<String, StartValue>,
+        /// Which of its interfaces runs; `None` = co-simulation if it has that.
+        interface: Option<UnitInterface>,
+    },
+}
+
+/// An interface of a unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum UnitInterface {
+    /// The unit integrates.
+    CoSimulation,
+    /// FMPy integrates the unit's equations (CVODE), and stops at its events.
+    ModelExchange,
+}
+
+/// Names of the interfaces.
+static INTERFACES: [Choice; 2] = [choice("co-simulation"), choice("model-exchange")];
+
+/// What a variable of a unit is at the start.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum StartValue {
+    /// This number, in the variable's own unit.
+    Number(f64),
+    /// True or false.
+    Flag(bool),
+    /// The number of the scene at this path, SI.
+    Path(String),
+}
+
+impl ExternalProgram {
+    /// What runs, as messages show it.
+    pub fn in_words(&self) -> String {
+        match self {
+            ExternalProgram::Command { command } => format!("program `{}`", command.join(" ")),
+            ExternalProgram::Unit { fmu, .. } => format!("unit `{fmu}`"),
+        }
+    }
+}
+
+/// What the keys of a program and those of a unit say.
+const WHAT: &str = "what runs";
+/// Name of a variable of a unit.
+static VARIABLE: Field = required("name", Kind::Text, "Name of the unit's variable");
+/// Value of a variable of a unit.
+static START: Field = required("value", Kind::Start, "Value of the unit's variable at the start");
+
 /// The keys of one entry.
-pub(super) static EXTERNAL: [Field; 3] = [
+pub(super) static EXTERNAL: [Field; 7] = [
     required("name", Kind::Name, "Name of the model in results, reports and [tolerances.<name>]"),
-    required(
-        "command",
-        Kind::Texts(MOST_WORDS),
-        "The program and its arguments, run in the scene file's folder and only with --allow-external",
+    one_way(
+        None,
+        WHAT,
+        "program",
+        required(
+            "command",
+            Kind::Texts(MOST_WORDS),
+            "The program and its arguments, run in the scene file's folder and only with --allow-external",
+        ),
+    ),
+    one_way(
+        None,
+        WHAT,
+        "unit",
+        required(
+            "fmu",
+            Kind::Text,
+            "File of a Functional Mock-up Unit, run with FMPy and only with --allow-external",
+        ),
+    ),
+    one_way(
+        None,
+        WHAT,
+        "unit",
+        required(
+            "variables",
+            Kind::Named(&VARIABLE),
+            "The unit's variables by the scene's curves and quantities that they are",
+        ),
+    ),
+    optional(
+        "start",
+        Kind::Named(&START),
+        "Values of the unit's variables at the start: numbers, true or false, or paths of numbers of the scene",
+    ),
+    optional(
+        "interface",
+        Kind::Choice(&INTERFACES),
+        "Interface of the unit that runs; absent = co-simulation if it has that",
     ),
     optional("timeout", positive(Dimension::TIME), "Time after which the program is ended; absent = 60 s"),
 ];
 
 /// The entry that checked values describe.
 pub(super) fn external(node: &Node) -> Result<External> {
+    let program = match node.0.get("fmu") {
+        Some(_) => ExternalProgram::Unit {
+            fmu: node.text("fmu")?.to_owned(),
+            variables: entries(node, "variables", |value| match value {
+                Checked::Text(name) => Some(name.clone()),
+                _ => None,
+            })?,
+            start: entries(node, "start", |value| match value {
+                Checked::Number(number) => Some(StartValue::Number(*number)),
+                Checked::Flag(flag) => Some(StartValue::Flag(*flag)),
+                Checked::Text(path) => Some(StartValue::Path(path.clone())),
+                _ => None,
+            })?,
+            interface: match node.0.get("interface") {
+                Some(Checked::Text(name)) if name == INTERFACES[1].name => Some(UnitInterface::ModelExchange),
+                Some(_) => Some(UnitInterface::CoSimulation),
+                None => None,
+            },
+        },
+        None => ExternalProgram::Command { command: node.texts("command")? },
+    };
     Ok(External {
         name: node.text("name")?.to_owned(),
-        command: node.texts("command")?,
+        program,
         timeout: node.number_or("timeout", DEFAULT_TIMEOUT)?,
     })
+}
+
+/// The entries of the table `key` of `node`; none if there is no such table.
+fn entries<T>(node: &Node, key: &str, of: impl Fn(&Checked) -> Option<T>) -> Result<BTreeMap<String, T>> {
+    let none = Values::new();
+    let table = node.optional_table(key)?.map_or(&none, |table| table.0);
+    let entry = |(name, value): (&String, &Checked)| {
+        let value = of(value).ok_or_else(|| Error::Internal(format!("`{key}.{name}` was not checked")))?;
+        Ok((name.clone(), value))
+    };
+    table.iter().map(entry).collect()
 }
 
 impl Checker<'_> {
@@ -73,6 +206,7 @@ impl Checker<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::scene::Scene;
 
     const SCENE: &str = include_str!("../../../tests/fixtures/plate-impact.toml");
@@ -88,13 +222,29 @@ mod tests {
         assert_eq!(scene.hash(), with("").expect("valid").hash());
         let [mine] = &scene.external[..] else { panic!("one program: {:?}", scene.external) };
         assert_eq!((&*mine.name, mine.timeout), ("mine", 60.0));
-        assert_eq!(mine.command, ["python3", "my model.py"]);
+        let command = ["python3", "my model.py"].map(String::from).to_vec();
+        assert_eq!(mine.program, ExternalProgram::Command { command });
         assert!(scene.tolerances["mine"].contains_key("efficiency"));
         let json = |scene: &Scene| serde_json::to_value(scene).expect("JSON");
         assert!(
             json(&scene).get("external").is_some()
                 && json(&with("").expect("valid")).get("external").is_none()
         );
+    }
+
+    #[test]
+    fn a_unit_has_a_map_and_start_values() {
+        let text = "[[external]]\nname = \"theirs\"\nfmu = \"their.fmu\"\nstart = { go = true, v = \"outer.speed\", e = 1 }\n[external.variables]\nouter_velocity = \"ball.v\"";
+        let scene = with(text).expect("valid");
+        let [External { program: ExternalProgram::Unit { fmu, variables, start, interface: None }, .. }] =
+            &scene.external[..]
+        else {
+            panic!("one unit: {:?}", scene.external)
+        };
+        assert_eq!((fmu.as_str(), variables["outer_velocity"].as_str()), ("their.fmu", "ball.v"));
+        let values =
+            [StartValue::Number(1.0), StartValue::Flag(true), StartValue::Path("outer.speed".into())];
+        assert!(start.values().eq(&values), "{start:?}");
     }
 
     #[test]
@@ -110,7 +260,10 @@ mod tests {
             (entry("mine").replace("[\"true\"]", "\"true\""), "but it must be a list"),
             (entry("mine").replace("\"true\"", "\"\""), "1 to 64 texts, the first not empty"),
             (entry("mine") + "timeout = \"0 s\"", "greater than 0 s"),
-            ("[[external]]\nname = \"mine\"".into(), "`external[1].command` is missing"),
+            ("[[external]]\nname = \"mine\"".into(), "what runs is missing"),
+            (entry("mine") + "fmu = \"a.fmu\"\nvariables = { efficiency = \"e\" }", "both give what runs"),
+            (entry("mine").replace("command = [\"true\"]", "fmu = \"a.fmu\""), "variables"),
+            (entry("mine").replace("command = [\"true\"]", "fmu = \"a.fmu\"\nvariables = {}"), "no entry"),
         ] {
             let crate::Error::Scene(report) = with(&text).expect_err(part) else { panic!("{part}") };
             let said =

@@ -77,8 +77,10 @@ pub(crate) enum Kind {
     Flag,
     /// The name of a table under `[materials]`.
     Material,
-    /// A table of such names under names of the user's choice.
-    Materials,
+    /// A table of values like this field's under names of the user's choice, at least one.
+    Named(&'static Field),
+    /// A number without unit, true or false, or the path of a number of the scene.
+    Start,
     /// A table with fixed keys.
     Table(&'static [Field]),
     /// A table of tables with fixed keys under names of the user's choice.

@@ -159,7 +159,9 @@ fn unit_below(fields: &[Field], path: &str) -> Option<&'static str> {
         (Kind::Table(inner), Some(rest)) => unit_below(inner, rest),
         // in JSON a material stands where it is used
         (Kind::Material, Some(rest)) => unit_below(&MATERIAL, rest),
-        (Kind::Materials, Some(rest)) => unit_below(&MATERIAL, rest.split_once('.')?.1),
+        (Kind::Named(Field { kind: Kind::Material, .. }), Some(rest)) => {
+            unit_below(&MATERIAL, rest.split_once('.')?.1)
+        }
         (Kind::Quantity(dimension, _) | Kind::Quantities(dimension, ..), None) => {
             Some(dimension.describe().1)
         }

@@ -28,7 +28,7 @@ pub(crate) mod tolerances;
 mod uncertainty;
 pub(crate) mod values;
 
-pub use external::External;
+pub use external::{External, ExternalProgram, StartValue, UnitInterface};
 pub use fault::{Fault, Faults, faults};
 pub use fault::{suggestion, unknown_name};
 pub use field::{Field, Rejected};

@@ -140,9 +140,10 @@ fn alternatives(fields: &[Field], kind: Option<&str>) -> Vec<Value> {
 fn value(kind: &Kind) -> Value {
     match kind {
         Kind::Text | Kind::Material => json!({ "type": "string" }),
-        Kind::Materials => json!({
-            "type": "object", "additionalProperties": value(&Kind::Material), "minProperties": 1,
+        Kind::Named(field) => json!({
+            "type": "object", "additionalProperties": value(&field.kind), "minProperties": 1,
         }),
+        Kind::Start => json!({ "type": ["number", "boolean", "string"] }),
         Kind::Name => json!({
             "type": "string", "pattern": "^[A-Za-z0-9_][A-Za-z0-9._-]*$", "maxLength": MAX_NAME,
         }),

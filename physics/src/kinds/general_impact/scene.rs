@@ -231,7 +231,7 @@ static BODY: [Field; 7] = [
         "groups",
         required(
             "materials",
-            Kind::Materials,
+            Kind::Named(&BODY_MATERIAL),
             "Materials by the names of groups of elements in the file, which have all elements",
         ),
     ),
