@@ -5,8 +5,10 @@ from __future__ import annotations
 import csv
 import json
 import random
+import re
 import subprocess
 import tomllib
+import zipfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,12 +17,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ..common.errors import SceneError
 from .program import ROOT
 
 fmpy = pytest.importorskip("fmpy")
 from fmpy import extract, fmi2, fmi3, read_model_description  # noqa: E402
 from fmpy.fmi1 import FMICallException  # noqa: E402
 from fmpy.validation import validate_fmu  # noqa: E402
+
+from ..units.simulate import answer  # noqa: E402
 
 PROGRAM = ROOT / "target/release/impactcheck"
 DISCARD, ERROR = 2, 3
@@ -371,3 +376,70 @@ def test_launches_follow_one_another(unit: Instance, launches: list[Launch]) -> 
     second = launches[1].result["efficiency"]
     assert unit.get("efficiency") == pytest.approx([second], rel=1e-9)
     assert unit.get("first_touch") == [4.02e-3]
+
+
+def asked(file: Path, variables: dict[str, str], start: dict[str, Any]) -> dict[str, Any]:
+    """A question of the program about a unit of its own."""
+    units = {"outer_velocity": "m/s", "inner_velocity": "m/s", "efficiency": "1"}
+    unit = {"file": str(file), "variables": variables, "start": start, "units": units}
+    scene = {"run": {"end_time": None}, "outer": {"speed": 0.55}}
+    return {
+        "schema_version": 1,
+        "sample_interval": 1e-6,
+        "scene": scene,
+        "unit": unit | {"curves": ["outer_velocity", "inner_velocity"], "interface": None},
+    }
+
+
+def test_a_unit_is_a_model_of_a_scene(units: dict[str, Path], launches: list[Launch]) -> None:
+    """As ``[[external]] fmu`` has it."""
+    variables = {"outer_velocity": "outer_velocity", "efficiency": "efficiency"}
+    start = {"launch": True, "outer.speed": "outer.speed"}
+    for version in ("2", "3"):
+        found = answer(asked(units[version], variables, start))
+        assert found["efficiency"] == pytest.approx(launches[0].result["efficiency"], rel=1e-9)
+        velocity = found["history"]["outer_velocity"]
+        assert velocity[0] == -0.55
+        assert velocity[-1] == pytest.approx(launches[0].result["outer_velocity_final"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("variables", "start", "part"),
+    [
+        ({"outer_velocity": "v"}, {}, "no variable 'v'; it has time, arm"),
+        ({"outer_velocity": "outer_displacement"}, {}, "is in m, but outer_velocity is in m/s"),
+        ({"outer_speed": "outer_velocity"}, {}, "no curve and no quantity 'outer_speed'"),
+        ({"efficiency": "efficiency"}, {"go": True}, "external.start.go: the unit has no variable"),
+        ({"efficiency": "efficiency"}, {"launch": "outer.mass"}, "no number at 'outer.mass'"),
+    ],
+)
+def test_what_a_unit_does_not_have_is_named(
+    units: dict[str, Path], variables: dict[str, str], start: dict[str, Any], part: str
+) -> None:
+    with pytest.raises(SceneError, match=re.escape(part)):
+        answer(asked(units["3"], variables, start))
+
+
+def test_what_is_no_unit_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "plain.fmu"
+    file.write_text("no archive")
+    with pytest.raises(SceneError, match="is no Functional Mock-up Unit"):
+        answer(asked(file, {"efficiency": "efficiency"}, {}))
+    with pytest.raises(SceneError, match="is no Functional Mock-up Unit"):
+        answer(asked(tmp_path / "none.fmu", {"efficiency": "efficiency"}, {}))
+
+
+def test_units_of_other_prefixes_are_converted(units: dict[str, Path], tmp_path: Path) -> None:
+    """The same unit, whose description says that its metre per second is one of 1/1000."""
+    file = tmp_path / "milli.fmu"
+    with zipfile.ZipFile(units["3"]) as source, zipfile.ZipFile(file, "w") as target:
+        for entry in source.infolist():
+            content = source.read(entry)
+            if entry.filename == "modelDescription.xml":
+                content = content.replace(
+                    b'<Unit name="m/s"><BaseUnit m="1" s="-1"/>',
+                    b'<Unit name="m/s"><BaseUnit m="1" s="-1" factor="0.001"/>',
+                )
+            target.writestr(entry, content)
+    found = answer(asked(file, {"outer_velocity": "outer_velocity"}, {"launch": True}))
+    assert found["history"]["outer_velocity"][0] == pytest.approx(-0.55e-3)

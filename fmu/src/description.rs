@@ -256,7 +256,7 @@ mod tests {
     #[test]
     fn every_unit_is_defined() {
         let mut scenes = 0;
-        for folder in ["../scenes", "../scenes/examples"] {
+        for folder in ["../scenes", "../scenes/examples", "../scenes/validation"] {
             for file in
                 std::fs::read_dir(folder).expect("scenes").map(|entry| entry.expect("an entry").path())
             {

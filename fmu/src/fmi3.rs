@@ -4,7 +4,6 @@
 //! All functions are called as the standard says: instances and states come from this library, arrays have the stated lengths, texts end
 //! with 0.
 #![expect(clippy::missing_safety_doc, reason = "the standard says how these functions are called")]
-#![expect(clippy::too_many_arguments, reason = "the standard's signatures")]
 
 use crate::instance::{Instance, Log, LogMessage3, Logger, Phase, Saved, Status, text};
 use crate::unit::Refusal;

@@ -121,7 +121,8 @@ pub struct Instance {
     /// Whether a step may end before its end.
     pub may_stop: bool,
     /// States that were handed out and not freed yet.
-    states: Vec<*mut Saved>,
+    #[expect(clippy::vec_box, reason = "the environment keeps their addresses")]
+    states: Vec<Box<Saved>>,
 }
 
 /// A state that was handed out.
@@ -171,11 +172,7 @@ impl Instance {
     pub unsafe fn free(instance: *mut Self) {
         if !instance.is_null() {
             // SAFETY: by the caller
-            let instance = unsafe { Box::from_raw(instance) };
-            for state in &instance.states {
-                // SAFETY: the list holds what `Box::into_raw` gave
-                drop(unsafe { Box::from_raw(*state) });
-            }
+            drop(unsafe { Box::from_raw(instance) });
         }
     }
 
@@ -275,23 +272,23 @@ impl Instance {
         Saved { phase: self.phase, state: self.unit.state().clone() }
     }
 
-    /// Puts a state into the hands of the environment.
+    /// Puts a state into the hands of the environment, by its address.
     pub fn hand_out(&mut self, state: Saved) -> *mut Saved {
-        let pointer = Box::into_raw(Box::new(state));
-        self.states.push(pointer);
-        pointer
+        let mut state = Box::new(state);
+        let address: *mut Saved = &mut *state;
+        self.states.push(state);
+        address
     }
 
-    /// The state behind a pointer that this instance has handed out.
+    /// The state at an address that this instance has handed out.
     ///
     /// # Errors
-    /// [`Refusal::Error`] of any other pointer.
+    /// [`Refusal::Error`] of any other address.
     pub fn known(&mut self, state: *mut Saved) -> Result<&mut Saved, Refusal> {
-        match self.states.contains(&state) {
-            // SAFETY: the list holds what `Box::into_raw` gave and was not freed
-            true => Ok(unsafe { &mut *state }),
-            false => Err(Refusal::Error("the state is none that this instance has given".into())),
-        }
+        let known = self.states.iter_mut().find(|known| std::ptr::eq::<Saved>(&***known, state));
+        known
+            .map(|known| &mut **known)
+            .ok_or_else(|| Refusal::Error("the state is none that this instance has given".into()))
     }
 
     /// Back into a state that this instance has handed out.
@@ -316,9 +313,7 @@ impl Instance {
         // SAFETY: by the caller
         let Some(place) = (unsafe { place.as_mut() }).filter(|place| !place.is_null()) else { return Ok(()) };
         self.known(*place)?;
-        self.states.retain(|state| state != place);
-        // SAFETY: it was in the list
-        drop(unsafe { Box::from_raw(*place) });
+        self.states.retain(|known| !std::ptr::eq::<Saved>(&**known, *place));
         *place = ptr::null_mut();
         Ok(())
     }

@@ -1,7 +1,6 @@
 //! What lies in a unit's folder of resources.
 
-use impactcheck_physics::kinds::general_impact::{MeshRequest, set_mesher};
-use impactcheck_physics::kinds::seal_seat::SeatMesh;
+use impactcheck_physics::kinds::{FollowedMesh, MeshRequest, set_mesher};
 use impactcheck_physics::scene::{Model, Template};
 use impactcheck_physics::{Error, Result};
 use serde::{Deserialize, Serialize};
@@ -40,7 +39,7 @@ pub struct Source {
     /// The model of [`Setup::model`].
     pub model: Model,
     /// The mesh of a seal seat.
-    pub mesh: Option<SeatMesh>,
+    pub mesh: Option<FollowedMesh>,
 }
 
 impl Source {
@@ -57,7 +56,7 @@ impl Source {
             .map_err(|e| Error::Internal(format!("{SETUP} of the unit: {e}")))?;
         offer_meshes(resources.join(MESHES));
         let mesh = resources.join(SEAT_MESH);
-        let mesh = mesh.is_file().then(|| SeatMesh::open(&mesh)).transpose()?;
+        let mesh = mesh.is_file().then(|| FollowedMesh::open(&mesh)).transpose()?;
         let scene = resources.join(SCENE);
         Self::new(Template::parse(&scene.display().to_string(), &read(SCENE)?)?, setup, mesh)
     }
@@ -66,7 +65,7 @@ impl Source {
     ///
     /// # Errors
     /// [`Error::Internal`] of a model that there is not.
-    pub fn new(template: Template, setup: Setup, mesh: Option<SeatMesh>) -> Result<Self> {
+    pub fn new(template: Template, setup: Setup, mesh: Option<FollowedMesh>) -> Result<Self> {
         let model = setup.model.parse().map_err(Error::Internal)?;
         Ok(Self { template, setup, model, mesh })
     }

@@ -57,6 +57,20 @@ pub struct State {
     launched: Option<Launched>,
 }
 
+impl State {
+    /// At rest at time 0, of the unit with this `token` and these `variables`.
+    fn new(token: &str, variables: &[Variable]) -> Self {
+        Self {
+            token: token.to_owned(),
+            values: variables.iter().map(|variable| variable.start).collect(),
+            time: 0.0,
+            armed: false,
+            before: [false; 2],
+            launched: None,
+        }
+    }
+}
+
 /// Where a step ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reached {
@@ -84,14 +98,7 @@ impl Unit {
     /// Those of a seat's mesh.
     pub fn new(source: Source) -> Result<Self> {
         let variables = variables(&source.template);
-        let state = State {
-            token: source.setup.token.clone(),
-            values: variables.iter().map(|variable| variable.start).collect(),
-            time: 0.0,
-            armed: false,
-            before: [false; 2],
-            launched: None,
-        };
+        let state = State::new(&source.setup.token, &variables);
         let series = kinds::series([], source.template.scene(), source.mesh.as_ref(), 1)?;
         Ok(Self { source, series, variables, state })
     }
@@ -138,14 +145,7 @@ impl Unit {
 
     /// Back to the values of the start, at rest at time 0.
     pub fn reset(&mut self) {
-        self.state = State {
-            token: self.state.token.clone(),
-            values: self.variables.iter().map(|variable| variable.start).collect(),
-            time: 0.0,
-            armed: false,
-            before: [false; 2],
-            launched: None,
-        };
+        self.state = State::new(&self.state.token, &self.variables);
     }
 
     fn variable(&self, reference: u32, kind: Type) -> Done<&Variable> {
@@ -211,7 +211,8 @@ impl Unit {
             return wrong(format!("the communication step is {step:?} s, but it must be greater than 0 s"));
         }
         let own = self.state.time;
-        if !((time - own).abs() <= ROUNDING * step + 4.0 * f64::EPSILON * own.abs()) {
+        let is_there = (time - own).abs() <= ROUNDING * step + 4.0 * f64::EPSILON * own.abs();
+        if !is_there {
             return wrong(format!(
                 "the communication point is {time:?} s, but the unit is at {own:?} s: a step begins where the last one ended"
             ));

@@ -3,6 +3,7 @@
 use super::Context;
 use crate::error::{Error, Result};
 use crate::external;
+use crate::reference;
 use crate::result::{Outcome, Summary};
 use crate::scene::Scene;
 use clap::Args;
@@ -61,7 +62,7 @@ pub(super) fn results(
     let folder = file.parent().unwrap_or(Path::new(""));
     let interval = sample_interval.unwrap_or(SAMPLE_INTERVAL);
     let run = |program| {
-        let outcome = external::run(scene, program, folder, interval);
+        let outcome = external::run(scene, program, folder, &reference::unit_runner, interval);
         let Summary { failure, warnings, solve_seconds, .. } = &outcome.summary;
         context.detail(format_args!("{}: {} answered in {solve_seconds:.2} s", scene.name, program.name));
         match failure {

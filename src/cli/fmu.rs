@@ -4,7 +4,7 @@ use super::requested_model::{ModelRequest, RequestedModel};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::fmu::{Parts, number, packed};
+use crate::fmu::{UnitParts, number, packed};
 use crate::kinds::SharedBodies;
 use crate::scene::{Template, resolve};
 use clap::Args;
@@ -65,7 +65,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     }
     // the numbers of modes that `auto` has chosen stays
     let is_chosen = matches!(request.model, Some(RequestedModel::Auto));
-    let unit = packed(&Parts {
+    let unit = packed(&UnitParts {
         template: &template,
         outcome: &outcome,
         modes: request.modes.or(summary.modes.filter(|_| is_chosen)),

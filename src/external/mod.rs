@@ -8,8 +8,8 @@ mod process;
 
 pub use answer::{assembled, summary};
 
+use crate::error::Error;
 use crate::kinds;
-use crate::reference;
 use crate::result::{History, Outcome, SCHEMA_VERSION, Source, Summary, Table};
 use crate::scene::{External, ExternalProgram, Scene};
 use process::{MOST_BYTES, Said};
@@ -23,10 +23,20 @@ use std::time::{Duration, Instant};
 /// Lines of a program's standard error that are told.
 const REPORTED_LINES: usize = 3;
 
-/// What `program` makes of `scene`, run in `folder`; it is asked for samples at the distance of `sample_interval` s.
-pub fn run(scene: &Scene, program: &External, folder: &Path, sample_interval: f64) -> Outcome {
+/// Gives the command that runs a unit, which is described on its standard input.
+pub type UnitRunner<'a> = &'a dyn Fn() -> Result<Command, Error>;
+
+/// What `program` makes of `scene`, run in `folder`, a unit by what `unit_runner` gives; it is asked for samples at the distance of
+/// `sample_interval` s.
+pub fn run(
+    scene: &Scene,
+    program: &External,
+    folder: &Path,
+    unit_runner: UnitRunner,
+    sample_interval: f64,
+) -> Outcome {
     let start = Instant::now();
-    let answered = run_program(scene, program, folder, sample_interval);
+    let answered = run_program(scene, program, (folder, unit_runner), sample_interval);
     let seconds = start.elapsed().as_secs_f64();
     match answered {
         Ok((mut summary, history)) => {
@@ -55,7 +65,7 @@ pub fn question(scene: &Scene, sample_interval: f64) -> serde_json::Result<Value
 fn run_program(
     scene: &Scene,
     program: &External,
-    folder: &Path,
+    (folder, unit_runner): (&Path, UnitRunner),
     sample_interval: f64,
 ) -> Result<(Summary, History), String> {
     let mut question = question(scene, sample_interval).map_err(|e| format!("the scene as JSON: {e}"))?;
@@ -77,7 +87,7 @@ fn run_program(
             question["unit"] = json!({
                 "file": file, "variables": variables, "start": start, "curves": curves, "units": units, "interface": interface,
             });
-            reference::unit_runner().map_err(|e| e.to_string())?
+            unit_runner().map_err(|e| e.to_string())?
         }
     };
     let limit = Duration::from_secs_f64(program.timeout);

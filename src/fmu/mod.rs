@@ -29,7 +29,7 @@ pub fn embed(library: &'static [u8]) {
 
 /// What a unit is made of.
 #[derive(Debug)]
-pub struct Parts<'a> {
+pub struct UnitParts<'a> {
     /// The scene.
     pub template: &'a Template,
     /// Its result with the numbers of the scene: which model, how long.
@@ -66,7 +66,7 @@ pub struct Packed {
 /// # Errors
 /// [`Error::Internal`] if this program was built without the library, [`Error::Usage`] if the standard has no name for this machine,
 /// [`Error::Io`] of files that can't be read.
-pub fn packed(parts: &Parts) -> Result<Packed> {
+pub fn packed(parts: &UnitParts) -> Result<Packed> {
     let library = LIBRARY.get().copied().filter(|library| !library.is_empty()).ok_or_else(|| {
         Error::Internal(
             "this program was built without the library of units: build it with `cargo build`".into(),

@@ -17,8 +17,6 @@ pub use impactcheck_physics::kinds::*;
 pub use place::Place;
 pub use plate_impact::closed_forms::{ClosedForm, Form};
 pub use plate_impact::shared::SharedBodies;
-/// The mesh that a series of impacts follows, of kinds that need one.
-pub use seal_seat::SeatMesh as FollowedMesh;
 
 use crate::error::{Error, Result};
 use crate::result::Summary;

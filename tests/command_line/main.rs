@@ -27,6 +27,7 @@ mod store_fixture;
 mod sweep_figures;
 mod sweeps;
 mod uncertainty;
+mod units;
 #[path = "../support/waiting.rs"]
 mod waiting;
 #[cfg(unix)]

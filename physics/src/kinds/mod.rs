@@ -17,9 +17,11 @@ use crate::flight::Launch;
 use crate::result::{Curve, History, Outcome, Quantity, Statement, Summary, Table};
 use crate::scene::{Language, Model, Scene};
 
-use general_impact::MeshRequest;
+pub use general_impact::{MeshRequest, set_mesher};
 pub use reading::{schema, unit_of};
 use seal_seat::SeatMesh;
+/// The mesh that a series of impacts follows, of kinds that need one.
+pub use seal_seat::SeatMesh as FollowedMesh;
 pub use series::{Series, SeriesModel, series};
 
 /// What everything that compares, shows or keeps results has to know of a kind of scene.
