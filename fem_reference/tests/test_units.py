@@ -7,6 +7,7 @@ import json
 import random
 import re
 import subprocess
+import sys
 import tomllib
 import zipfile
 from collections.abc import Callable, Iterator
@@ -375,7 +376,7 @@ def test_launches_follow_one_another(unit: Instance, launches: list[Launch]) -> 
         unit.step(3.02e-3 + value * 1e-3, 1e-3)
     second = launches[1].result["efficiency"]
     assert unit.get("efficiency") == pytest.approx([second], rel=1e-9)
-    assert unit.get("first_touch") == [4.02e-3]
+    assert unit.get("first_contact") == [4.02e-3]
 
 
 def asked(file: Path, variables: dict[str, str], start: dict[str, Any]) -> dict[str, Any]:
@@ -443,3 +444,15 @@ def test_units_of_other_prefixes_are_converted(units: dict[str, Path], tmp_path:
             target.writestr(entry, content)
     found = answer(asked(file, {"outer_velocity": "outer_velocity"}, {"launch": True}))
     assert found["history"]["outer_velocity"][0] == pytest.approx(-0.55e-3)
+
+
+@pytest.mark.evidence
+def test_the_system_example_gives_the_guides_table(tmp_path: Path) -> None:
+    unit = tmp_path / "valve.fmu"
+    program("fmu", "scenes/examples/rocker-flight.toml", "--modes", "24", "-o", unit)
+    command = [sys.executable, "examples/fmu/valve.py", str(unit)]
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    page = (ROOT / "guide/src/how-to/system-simulation.md").read_text()
+    rows = re.findall(r"^\| (\d+) V \| ([\d.]+) ms \| (\d+) mm/s \| (yes|no) \|$", page, flags=re.M)
+    printed = re.findall(r"^ *(\d+) V +([\d.]+) ms +(\d+) mm/s +(yes|no) ", run.stdout, flags=re.M)
+    assert len(rows) == 5 and rows == printed

@@ -1,7 +1,7 @@
 //! `modelDescription.xml`: what a simulation reads of a unit before it loads it.
 
 use crate::instance::CATEGORIES;
-use crate::variables::{Output, Role, Type, Variable};
+use crate::variables::{Output, Role, Type, UnitVariable};
 use std::fmt::Write;
 
 /// A version of the standard.
@@ -64,7 +64,7 @@ const BASES: [&str; 5] = ["kg", "m", "s", "A", "rad"];
 const STEPS: f64 = 1000.0;
 
 /// The document of a unit with these `variables`.
-pub fn model_description(version: Version, of: &Identity, variables: &[Variable]) -> String {
+pub fn model_description(version: Version, of: &Identity, variables: &[UnitVariable]) -> String {
     let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     let [standard, token, state] = match version {
         Version::Two => ["2.0", "guid", "FMUstate"],
@@ -116,7 +116,7 @@ pub fn model_description(version: Version, of: &Identity, variables: &[Variable]
 }
 
 /// Definitions of the units that occur.
-fn units(xml: &mut String, variables: &[Variable]) {
+fn units(xml: &mut String, variables: &[UnitVariable]) {
     xml.push_str("  <UnitDefinitions>\n");
     for (name, exponents) in UNITS.iter().filter(|(name, _)| variables.iter().any(|v| v.unit == *name)) {
         let bases: Vec<(&str, String)> =
@@ -128,7 +128,7 @@ fn units(xml: &mut String, variables: &[Variable]) {
 }
 
 /// Causality and variability.
-fn nature(variable: &Variable) -> [&'static str; 2] {
+fn nature(variable: &UnitVariable) -> [&'static str; 2] {
     match (&variable.role, variable.kind) {
         (Role::Time, _) => ["independent", "continuous"],
         (Role::Field(_), _) => ["parameter", "tunable"],
@@ -140,7 +140,7 @@ fn nature(variable: &Variable) -> [&'static str; 2] {
 }
 
 /// What is stated of the values: unit, bounds, start.
-fn values(variable: &Variable) -> Vec<(&'static str, String)> {
+fn values(variable: &UnitVariable) -> Vec<(&'static str, String)> {
     let mut stated = Vec::new();
     if variable.unit != "1" && variable.kind == Type::Real {
         stated.push(("unit", variable.unit.to_owned()));
@@ -172,7 +172,7 @@ fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-fn variable_of_3(xml: &mut String, reference: usize, variable: &Variable) {
+fn variable_of_3(xml: &mut String, reference: usize, variable: &UnitVariable) {
     let element = match variable.kind {
         Type::Real => "Float64",
         Type::Integer => "Int32",
@@ -190,7 +190,7 @@ fn variable_of_3(xml: &mut String, reference: usize, variable: &Variable) {
     let _ = writeln!(xml, "    <{element}{}/>", attributes(&of));
 }
 
-fn variable_of_2(xml: &mut String, reference: usize, variable: &Variable) {
+fn variable_of_2(xml: &mut String, reference: usize, variable: &UnitVariable) {
     let element = match variable.kind {
         Type::Real => "Real",
         Type::Integer => "Integer",
@@ -209,7 +209,7 @@ fn variable_of_2(xml: &mut String, reference: usize, variable: &Variable) {
 }
 
 /// Outputs depend on nothing at a communication point.
-fn structure(xml: &mut String, version: Version, variables: &[Variable]) {
+fn structure(xml: &mut String, version: Version, variables: &[UnitVariable]) {
     let outputs = || variables.iter().enumerate().filter(|(_, variable)| variable.is_output());
     let none = || ("dependencies", String::new());
     match version {

@@ -2,9 +2,9 @@
 //!
 //! # Safety
 //! As [`crate::fmi3`].
-#![expect(clippy::missing_safety_doc, reason = "the standard says how these functions are called")]
+#![expect(clippy::missing_safety_doc, reason = "the standard states how these functions are called")]
 
-use crate::instance::{Boolean2, Instance, Log, LogMessage2, Logger, Phase, Saved, Status, text};
+use crate::instance::{Boolean2, Instance, InstanceLog, LogMessage2, Logger, Phase, Saved, Status, text};
 use crate::unit::Refusal;
 use crate::variables::Type;
 use std::ffi::{c_char, c_int, c_void};
@@ -54,7 +54,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     logging_on: Boolean2,
 ) -> *mut Instance {
     let functions = unsafe { functions.as_ref() };
-    let log = Log {
+    let log = InstanceLog {
         name: unsafe { text(name) }.to_owned(),
         logger: functions.and_then(|of| of.logger).map_or(Logger::Silent, Logger::Two),
         environment: functions.map_or(ptr::null_mut(), |of| of.environment),

@@ -1,11 +1,11 @@
 //! The C interface of FMI 3.0, co-simulation (`fmi3Functions.h`).
 //!
 //! # Safety
-//! All functions are called as the standard says: instances and states come from this library, arrays have the stated lengths, texts end
+//! All functions are called as the standard states: instances and states come from this library, arrays have the stated lengths, texts end
 //! with 0.
-#![expect(clippy::missing_safety_doc, reason = "the standard says how these functions are called")]
+#![expect(clippy::missing_safety_doc, reason = "the standard states how these functions are called")]
 
-use crate::instance::{Instance, Log, LogMessage3, Logger, Phase, Saved, Status, text};
+use crate::instance::{Instance, InstanceLog, LogMessage3, Logger, Phase, Saved, Status, text};
 use crate::unit::Refusal;
 use crate::variables::Type;
 use std::ffi::{c_char, c_void};
@@ -39,7 +39,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     _intermediate_update: *const c_void,
 ) -> *mut Instance {
     let logger = log_message.map_or(Logger::Silent, Logger::Three);
-    let log = Log { name: unsafe { text(name) }.to_owned(), logger, environment, is_on: logging_on };
+    let log = InstanceLog { name: unsafe { text(name) }.to_owned(), logger, environment, is_on: logging_on };
     if event_mode_used || intermediate_count > 0 {
         log.write(Status::Error, "the unit has neither an event mode nor intermediate variables");
         return ptr::null_mut();
@@ -338,7 +338,7 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
 
 fn only_co_simulation(environment: *mut c_void, log_message: Option<LogMessage3>) -> *mut Instance {
     let logger = log_message.map_or(Logger::Silent, Logger::Three);
-    let log = Log { name: c"".to_owned(), logger, environment, is_on: true };
+    let log = InstanceLog { name: c"".to_owned(), logger, environment, is_on: true };
     log.write(Status::Error, "the unit is for co-simulation only");
     ptr::null_mut()
 }

@@ -1,7 +1,7 @@
 //! One launch: the whole impact, computed, and what it shows at any time.
 
 use crate::course::{integrals, motion};
-use crate::source::Source;
+use crate::source::UnitSource;
 use crate::variables::Output;
 use impactcheck_physics::Result;
 use impactcheck_physics::flight::Seat;
@@ -14,7 +14,7 @@ use std::sync::OnceLock;
 
 /// An impact that was computed.
 #[derive(Debug)]
-pub struct Impact {
+pub struct LaunchedImpact {
     scene: Scene,
     outcome: Outcome,
     /// By name of the force.
@@ -23,12 +23,12 @@ pub struct Impact {
     prediction: OnceLock<Prediction>,
 }
 
-impl Impact {
+impl LaunchedImpact {
     /// Computes the impact of `scene` with the model of `source`, one of a `series`.
     ///
     /// # Errors
     /// Those of the model.
-    pub fn new(source: &Source, series: &dyn Series, scene: Scene) -> Result<Self> {
+    pub fn new(source: &UnitSource, series: &dyn Series, scene: Scene) -> Result<Self> {
         let model = series.model(scene.clone(), source.model, source.setup.modes)?;
         let outcome = model.run_with_history(source.setup.tolerance)?;
         let history = &outcome.history;
@@ -42,19 +42,26 @@ impl Impact {
         &self.outcome.summary
     }
 
-    /// Time in s from the launch to the first touch: a bender swings until it strikes.
+    /// Time in s from the launch to the first contact: a bender swings until it strikes.
     pub fn delay(&self) -> f64 {
         self.summary().bender.map_or(0.0, |bender| bender.drive.strike_delay)
     }
 
-    /// Time in s from the first touch to the last release, or to the end of a run that was cut before.
+    /// Time in s from the first contact to the last release, or to the end of a run that was cut before.
     pub fn duration(&self) -> f64 {
         let end = self.outcome.history.time.last().copied().unwrap_or(0.0);
         self.summary().last_contact().unwrap_or(end)
     }
 
     /// Value of `output` after `time` s since the launch at `launch`; `series` shares bodies with the model that predictions need.
-    pub fn value(&self, source: &Source, series: &dyn Series, output: Output, launch: f64, time: f64) -> f64 {
+    pub fn value(
+        &self,
+        source: &UnitSource,
+        series: &dyn Series,
+        output: Output,
+        launch: f64,
+        time: f64,
+    ) -> f64 {
         let since_touch = time - self.delay();
         let is_over = since_touch >= self.duration();
         let once_over = |value: f64| if is_over { value } else { 0.0 };
@@ -90,7 +97,7 @@ impl Impact {
         summary.warnings.is_empty() && !summary.undetermined().any(|name| kind.has(&self.scene, name))
     }
 
-    /// Displacement or velocity `t` s after the first touch.
+    /// Displacement or velocity `t` s after the first contact.
     fn curve(&self, name: &str, t: f64) -> f64 {
         let history = &self.outcome.history;
         let of = |what: &str| {
@@ -106,7 +113,7 @@ impl Impact {
         found.unwrap_or(f64::NAN)
     }
 
-    /// Integral of a force from the first touch to `t` s after it.
+    /// Integral of a force from the first contact to `t` s after it.
     fn impulse(&self, force: &str, t: f64) -> f64 {
         let history = &self.outcome.history;
         match (self.impulses.get(force), history.curve(force)) {
@@ -119,14 +126,14 @@ impl Impact {
     }
 
     /// The 95 % interval of the quantity `name`.
-    fn interval(&self, source: &Source, series: &dyn Series, name: &str) -> [f64; 2] {
+    fn interval(&self, source: &UnitSource, series: &dyn Series, name: &str) -> [f64; 2] {
         let intervals = self.prediction(source, series).as_ref().ok();
         let found = intervals.and_then(|intervals| intervals.get(name));
         found.map_or([f64::NAN; 2], |interval| [interval.low, interval.high])
     }
 
     /// What a reference would find: model C runs for it, as it is by default, unless this is its result.
-    fn prediction(&self, source: &Source, series: &dyn Series) -> &Prediction {
+    fn prediction(&self, source: &UnitSource, series: &dyn Series) -> &Prediction {
         self.prediction.get_or_init(|| {
             // before model C costs anything
             Similar::of(&self.scene)?;

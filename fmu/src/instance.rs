@@ -1,7 +1,7 @@
 //! An instance behind the C interfaces: order of the calls, log, states that were handed out.
 
-use crate::source::Source;
-use crate::unit::{Refusal, State, Unit};
+use crate::source::UnitSource;
+use crate::unit::{ImpactUnit, Refusal, UnitState};
 use crate::variables::Type;
 use serde::{Deserialize, Serialize};
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -63,7 +63,7 @@ pub type LogMessage3 = unsafe extern "C" fn(*mut c_void, Status, *const c_char, 
 
 /// Who wants to know what.
 #[derive(Debug)]
-pub struct Log {
+pub struct InstanceLog {
     /// Name of the instance.
     pub name: CString,
     /// Takes the messages.
@@ -74,7 +74,7 @@ pub struct Log {
     pub is_on: bool,
 }
 
-impl Log {
+impl InstanceLog {
     /// Passes on what the user has to know.
     pub fn remark(&self, remarks: &[String]) {
         remarks.iter().for_each(|remark| self.write(Status::Warning, remark));
@@ -113,9 +113,9 @@ impl Log {
 #[derive(Debug)]
 pub struct Instance {
     /// The unit.
-    pub unit: Unit,
+    pub unit: ImpactUnit,
     /// Its log.
-    pub log: Log,
+    pub log: InstanceLog,
     /// Where it is in its life.
     pub phase: Phase,
     /// Whether a step may end before its end.
@@ -129,14 +129,14 @@ pub struct Instance {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Saved {
     phase: Phase,
-    state: State,
+    state: UnitState,
 }
 
 impl Instance {
     /// Makes one of the unit in the folder `resources` if its token is `token`; a null pointer with a message in the log if that fails.
-    pub fn create(log: Log, token: &CStr, resources: &Path, may_stop: bool) -> *mut Self {
+    pub fn create(log: InstanceLog, token: &CStr, resources: &Path, may_stop: bool) -> *mut Self {
         let made = catch_unwind(|| {
-            let source = Source::read(resources).map_err(|error| error.to_string())?;
+            let source = UnitSource::read(resources).map_err(|error| error.to_string())?;
             let own = source.setup.token.clone();
             if token.to_bytes() != own.as_bytes() {
                 let given = token.to_string_lossy();
@@ -144,7 +144,7 @@ impl Instance {
                     "the instantiation token is \"{given}\", but that of the unit is \"{own}\""
                 ));
             }
-            Unit::new(source).map_err(|error| error.to_string())
+            ImpactUnit::new(source).map_err(|error| error.to_string())
         });
         match made {
             Ok(Ok(unit)) => Box::into_raw(Box::new(Self {
@@ -206,7 +206,7 @@ impl Instance {
     /// Copies the value of every variable in `references` into `values`.
     ///
     /// # Errors
-    /// As [`Unit::get`].
+    /// As [`ImpactUnit::get`].
     ///
     /// # Safety
     /// `references` and `values` point to `count` entries each.
@@ -226,7 +226,7 @@ impl Instance {
     /// Sets every variable in `references` to its entry of `values`: all or none.
     ///
     /// # Errors
-    /// As [`Unit::set`].
+    /// As [`ImpactUnit::set`].
     ///
     /// # Safety
     /// As [`Instance::get`].

@@ -1,6 +1,6 @@
 //! A scene's reduced model as a Functional Mock-up Unit (FMU) for co-simulation, FMI 2.0 and 3.0.
 //!
-//! Most masters step over a whole impact, and contact forces are too stiff to be coupled across units. So a [`Unit`] integrates the
+//! Most masters step over a whole impact, and contact forces are too stiff to be coupled across units. So an [`ImpactUnit`] integrates the
 //! whole impact at its launch, with the program's own integrator, and then gives its course at any time: results do not depend on
 //! the communication steps.
 //!
@@ -19,6 +19,6 @@ pub mod unit;
 pub mod variables;
 
 pub use description::{Identity, Version, model_description};
-pub use source::{MESHES, SCENE, SEAT_MESH, SETUP, Setup, Source};
-pub use unit::Unit;
-pub use variables::{Variable, variables};
+pub use source::{MESHES, SCENE, SEAT_MESH, SETUP, UnitSetup, UnitSource};
+pub use unit::ImpactUnit;
+pub use variables::{UnitVariable, variables};

@@ -9,7 +9,7 @@ use std::sync::RwLock;
 
 /// The scene file.
 pub const SCENE: &str = "scene.toml";
-/// The [`Setup`].
+/// The [`UnitSetup`].
 pub const SETUP: &str = "unit.json";
 /// The mesh of a seal seat.
 pub const SEAT_MESH: &str = "seat.vtu";
@@ -18,7 +18,7 @@ pub const MESHES: &str = "meshes";
 
 /// Which reduced model a unit runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Setup {
+pub struct UnitSetup {
     /// What tells the unit from others: it stands in `modelDescription.xml` too.
     pub token: String,
     /// A, B or C.
@@ -31,18 +31,18 @@ pub struct Setup {
 
 /// A scene with its reduced model.
 #[derive(Debug)]
-pub struct Source {
+pub struct UnitSource {
     /// The scene file, open to variation.
     pub template: Template,
-    /// See [`Setup`].
-    pub setup: Setup,
-    /// The model of [`Setup::model`].
+    /// See [`UnitSetup`].
+    pub setup: UnitSetup,
+    /// The model of [`UnitSetup::model`].
     pub model: Model,
     /// The mesh of a seal seat.
     pub mesh: Option<FollowedMesh>,
 }
 
-impl Source {
+impl UnitSource {
     /// What `resources` holds, a unit's folder. From now on bodies find their meshes there.
     ///
     /// # Errors
@@ -52,7 +52,7 @@ impl Source {
             let path = resources.join(name);
             std::fs::read_to_string(&path).map_err(|e| Error::io("reading", path, e))
         };
-        let setup: Setup = serde_json::from_str(&read(SETUP)?)
+        let setup: UnitSetup = serde_json::from_str(&read(SETUP)?)
             .map_err(|e| Error::Internal(format!("{SETUP} of the unit: {e}")))?;
         offer_meshes(resources.join(MESHES));
         let mesh = resources.join(SEAT_MESH);
@@ -65,7 +65,7 @@ impl Source {
     ///
     /// # Errors
     /// [`Error::Internal`] of a model that there is not.
-    pub fn new(template: Template, setup: Setup, mesh: Option<FollowedMesh>) -> Result<Self> {
+    pub fn new(template: Template, setup: UnitSetup, mesh: Option<FollowedMesh>) -> Result<Self> {
         let model = setup.model.parse().map_err(Error::Internal)?;
         Ok(Self { template, setup, model, mesh })
     }

@@ -1,8 +1,8 @@
 //! The unit: its variables, its state, its steps.
 
-use crate::impact::Impact;
-use crate::source::Source;
-use crate::variables::{Output, Role, Type, Variable, variables};
+use crate::impact::LaunchedImpact;
+use crate::source::UnitSource;
+use crate::variables::{Output, Role, Type, UnitVariable, variables};
 use impactcheck_physics::kinds::{self, Series};
 use impactcheck_physics::scene::Field;
 use impactcheck_physics::{Error, Result};
@@ -38,12 +38,12 @@ struct Launched {
     values: Vec<f64>,
     /// What came of it; computed again where a state comes from a file.
     #[serde(skip)]
-    impact: Option<Arc<Impact>>,
+    impact: Option<Arc<LaunchedImpact>>,
 }
 
 /// All that changes of a unit.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct State {
+pub struct UnitState {
     /// Token of the unit that it belongs to.
     token: String,
     /// Values of parameters and inputs, by value reference.
@@ -57,9 +57,9 @@ pub struct State {
     launched: Option<Launched>,
 }
 
-impl State {
+impl UnitState {
     /// At rest at time 0, of the unit with this `token` and these `variables`.
-    fn new(token: &str, variables: &[Variable]) -> Self {
+    fn new(token: &str, variables: &[UnitVariable]) -> Self {
         Self {
             token: token.to_owned(),
             values: variables.iter().map(|variable| variable.start).collect(),
@@ -76,7 +76,7 @@ impl State {
 pub struct Reached {
     /// Simulation time, s.
     pub time: f64,
-    /// Whether that is before the end of the step, at a first touch or a last release.
+    /// Whether that is before the end of the step, at a first contact or a last release.
     pub early: bool,
     /// What the user has to know: the warnings of an impact that was launched, a launch that was ignored.
     pub remarks: Vec<String>,
@@ -84,32 +84,32 @@ pub struct Reached {
 
 /// A scene's reduced model that a simulation steps through time.
 #[derive(Debug)]
-pub struct Unit {
-    source: Source,
+pub struct ImpactUnit {
+    source: UnitSource,
     series: Box<dyn Series>,
-    variables: Vec<Variable>,
-    state: State,
+    variables: Vec<UnitVariable>,
+    state: UnitState,
 }
 
-impl Unit {
+impl ImpactUnit {
     /// The unit of `source`, at rest at time 0.
     ///
     /// # Errors
     /// Those of a seat's mesh.
-    pub fn new(source: Source) -> Result<Self> {
+    pub fn new(source: UnitSource) -> Result<Self> {
         let variables = variables(&source.template);
-        let state = State::new(&source.setup.token, &variables);
+        let state = UnitState::new(&source.setup.token, &variables);
         let series = kinds::series([], source.template.scene(), source.mesh.as_ref(), 1)?;
         Ok(Self { source, series, variables, state })
     }
 
     /// Its variables, by value reference.
-    pub fn variables(&self) -> &[Variable] {
+    pub fn variables(&self) -> &[UnitVariable] {
         &self.variables
     }
 
     /// Its state.
-    pub fn state(&self) -> &State {
+    pub fn state(&self) -> &UnitState {
         &self.state
     }
 
@@ -117,7 +117,7 @@ impl Unit {
     ///
     /// # Errors
     /// [`Refusal::Error`] of a state of another unit; [`Refusal::Discard`] of one whose impact can't be computed.
-    pub fn set_state(&mut self, mut state: State) -> Done {
+    pub fn set_state(&mut self, mut state: UnitState) -> Done {
         if state.token != self.state.token || state.values.len() != self.variables.len() {
             return wrong(format!(
                 "the state belongs to another unit: its token is {}, that of this unit {}",
@@ -145,10 +145,10 @@ impl Unit {
 
     /// Back to the values of the start, at rest at time 0.
     pub fn reset(&mut self) {
-        self.state = State::new(&self.state.token, &self.variables);
+        self.state = UnitState::new(&self.state.token, &self.variables);
     }
 
-    fn variable(&self, reference: u32, kind: Type) -> Done<&Variable> {
+    fn variable(&self, reference: u32, kind: Type) -> Done<&UnitVariable> {
         let Some(variable) = self.variables.get(reference as usize) else {
             let last = self.variables.len() - 1;
             return wrong(format!(
@@ -201,7 +201,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Steps from `time` by `step` s. With `may_stop` the step ends at a first touch or a last release within it.
+    /// Steps from `time` by `step` s. With `may_stop` the step ends at a first contact or a last release within it.
     ///
     /// # Errors
     /// [`Refusal::Error`] of a step that is not positive, or does not begin where the last one ended; [`Refusal::Discard`] if an impact is
@@ -237,7 +237,7 @@ impl Unit {
     }
 
     /// The state after the edges of `arm` and `launch` at `time` s, and what the user has to know of them.
-    fn with_edges(&self, time: f64) -> Done<(State, Vec<String>)> {
+    fn with_edges(&self, time: f64) -> Done<(UnitState, Vec<String>)> {
         let mut next = self.state.clone();
         let mut remarks = Vec::new();
         let on = |role: fn(&Role) -> bool| {
@@ -265,11 +265,11 @@ impl Unit {
     }
 
     /// The impact of the scene with these `values` of the variables.
-    fn impact_of(&self, values: &[f64]) -> Done<Impact> {
+    fn impact_of(&self, values: &[f64]) -> Done<LaunchedImpact> {
         let scene = self.source.template.with(&self.numbers(values));
         let scene = scene.map_err(|rejected| Refusal::Discard(rejected.to_string()))?;
         let failed = |error: Error| Refusal::Discard(format!("the impact can't be computed: {error}"));
-        Impact::new(&self.source, &*self.series, scene).map_err(failed)
+        LaunchedImpact::new(&self.source, &*self.series, scene).map_err(failed)
     }
 
     /// The fields that differ from the scene file's, with their numbers.
@@ -295,7 +295,7 @@ impl Unit {
 }
 
 impl Launched {
-    /// The first touch or last release strictly between two times, the earlier one.
+    /// The first contact or last release strictly between two times, the earlier one.
     fn event_within(&self, start: f64, end: f64) -> Option<f64> {
         let impact = self.impact.as_ref()?;
         let touch = self.time + impact.delay();

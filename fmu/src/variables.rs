@@ -41,7 +41,7 @@ pub enum Output {
     Impulse(&'static str),
     /// Whether the impact is over.
     Over,
-    /// Time of the first touch.
+    /// Time of the first contact.
     Touch,
     /// Time of the last release.
     Release,
@@ -65,7 +65,7 @@ pub enum Output {
 
 /// A variable; its value reference is its place in [`variables`].
 #[derive(Debug, Clone)]
-pub struct Variable {
+pub struct UnitVariable {
     /// Name, unique.
     pub name: String,
     /// What it is, in a sentence.
@@ -80,7 +80,7 @@ pub struct Variable {
     pub start: f64,
 }
 
-impl Variable {
+impl UnitVariable {
     fn new(name: impl Into<String>, (unit, kind): (&'static str, Type), role: Role, start: f64) -> Self {
         let description = match &role {
             Role::Time => "Simulation time".into(),
@@ -105,7 +105,7 @@ impl Output {
         match self {
             Output::Curve(name) => {
                 let (body, what) = name.split_once('_').unwrap_or(("body", name));
-                let since = if what.starts_with("displacement") { " since the first touch" } else { "" };
+                let since = if what.starts_with("displacement") { " since the first contact" } else { "" };
                 let what = what.replace('_', " along ");
                 let along = if what.contains("along") { "" } else { " along z" };
                 let mut text = format!("{what} of the {body}{along}{since}");
@@ -115,9 +115,9 @@ impl Output {
                 }
                 text
             }
-            Output::Impulse(force) => format!("Integral of {force} since the first touch"),
+            Output::Impulse(force) => format!("Integral of {force} since the first contact"),
             Output::Over => "Whether the impact is over: the results below are valid then, 0 before".into(),
-            Output::Touch => "Time of the first touch".into(),
+            Output::Touch => "Time of the first contact".into(),
             Output::Release => "Time of the last release".into(),
             Output::Quantity(quantity) => quantity.about.to_owned(),
             Output::Valid => "Whether all results are determined and none has a warning".into(),
@@ -141,14 +141,14 @@ fn is_voltage(field: &Field) -> bool {
 }
 
 /// The variables of a unit of `template`, in the order of their value references.
-pub fn variables(template: &Template) -> Vec<Variable> {
+pub fn variables(template: &Template) -> Vec<UnitVariable> {
     use Type::{Boolean, Integer, Real};
     let scene = template.scene();
     let kind = kinds::of(scene);
     let mut all = vec![
-        Variable::new("time", ("s", Real), Role::Time, 0.0),
-        Variable::new("arm", ("1", Boolean), Role::Arm, 1.0),
-        Variable::new("launch", ("1", Boolean), Role::Launch, 0.0),
+        UnitVariable::new("time", ("s", Real), Role::Time, 0.0),
+        UnitVariable::new("arm", ("1", Boolean), Role::Arm, 1.0),
+        UnitVariable::new("launch", ("1", Boolean), Role::Launch, 0.0),
     ];
     // how the model computes is no number of the system's
     let fields = template.fields().into_iter().filter(|field| !field.path().starts_with("reduced."));
@@ -158,10 +158,10 @@ pub fn variables(template: &Template) -> Vec<Variable> {
         let name = field.path().to_owned();
         let of = (field.unit(), if field.is_count() { Integer } else { Real });
         let role = if is_voltage(&field) { Role::Voltage(field) } else { Role::Field(field) };
-        all.push(Variable::new(name, of, role, start));
+        all.push(UnitVariable::new(name, of, role, start));
     }
     let mut output = |name: String, unit, kind, output| {
-        all.push(Variable::new(name, (unit, kind), Role::Output(output), 0.0));
+        all.push(UnitVariable::new(name, (unit, kind), Role::Output(output), 0.0));
     };
     let curves = kind.curves().iter().filter(|curve| kind.has(scene, curve.name) && !curve.is_elastic);
     for curve in curves {
@@ -176,7 +176,7 @@ pub fn variables(template: &Template) -> Vec<Variable> {
         }
     }
     output("impact_over".into(), "1", Boolean, Output::Over);
-    output("first_touch".into(), "s", Real, Output::Touch);
+    output("first_contact".into(), "s", Real, Output::Touch);
     output("last_release".into(), "s", Real, Output::Release);
     let quantities = || kind.quantities().iter().filter(|quantity| kind.has(scene, quantity.name));
     for quantity in quantities() {

@@ -63,7 +63,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     for warning in &summary.warnings {
         context.note(format_args!("warning: {warning}"));
     }
-    // the numbers of modes that `auto` has chosen stays
+    // the number of modes that `auto` has chosen stays
     let is_chosen = matches!(request.model, Some(RequestedModel::Auto));
     let unit = packed(&UnitParts {
         template: &template,
@@ -82,7 +82,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     });
     arguments.json.print(&document, |_| {
         let megabytes = bytes as f64 / 1e6;
-        format!("{}: FMI {fmi}, model {model}, {variables} variables, {megabytes:.1} MB", out.display())
+        format!("{}: FMI {fmi}, model {model}, {variables} variables, {megabytes:.0} MB", out.display())
     })?;
     Ok(ExitStatus::Pass)
 }

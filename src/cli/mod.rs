@@ -114,7 +114,7 @@ enum Command {
     /// Test the time integration on random scenes
     #[command(after_help = "Example: impactcheck stress --cases 1000 --seed 1")]
     Stress(stress::Arguments),
-    /// Write a scene as a Functional Mock-up Unit, for system simulations
+    /// Write a scene as an FMU, a unit of a system simulation
     #[command(
         after_help = "Examples: impactcheck fmu scaled-plate-r10 -o plate.fmu\n          impactcheck fmu rocker-flight --fmi 2 -o valve.fmu"
     )]

@@ -7,7 +7,9 @@ use crate::report::unit_page;
 use crate::result::Outcome;
 use crate::scene::Template;
 use crate::scene::hash::sha256_hex;
-use impactcheck_fmu::{Identity, SCENE, SETUP, Setup, Variable, Version, model_description, variables};
+use impactcheck_fmu::{
+    Identity, SCENE, SETUP, UnitSetup, UnitVariable, Version, model_description, variables,
+};
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -58,7 +60,7 @@ pub struct Packed {
     /// The file.
     pub bytes: Vec<u8>,
     /// The variables.
-    pub variables: Vec<Variable>,
+    pub variables: Vec<UnitVariable>,
 }
 
 /// The unit made of `parts`; the same parts give the same bytes.
@@ -78,7 +80,7 @@ pub fn packed(parts: &UnitParts) -> Result<Packed> {
     let summary = &parts.outcome.summary;
     let variables = variables(parts.template);
     let text = scene_file(parts.template)?;
-    let mut setup = Setup {
+    let mut setup = UnitSetup {
         token: String::new(),
         model: summary.model.clone().unwrap_or_default(),
         modes: parts.modes,

@@ -60,7 +60,9 @@ pub fn doctor(store: &Store) -> Vec<Check> {
         install: "make setup".to_owned(),
         optional: true,
     });
-    checks.push(record_readers(chosen));
+    let formats = "measured records as UFF 58, TDMS, MATLAB 7.3, HDF5 and Parquet (`--measured`)";
+    checks.push(libraries(chosen, "record formats", "pyuff npTDMS h5py pyarrow", formats));
+    checks.push(libraries(chosen, "FMPy", "fmpy", "units of other programs as models (`[[external]] fmu`)"));
     checks.push(store_folder(store));
     for path in shipped().unwrap_or_default() {
         if let Ok(scene) = Scene::read(&path) {
@@ -227,9 +229,8 @@ fn mujoco() -> Option<String> {
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
-/// The libraries that read records in binary formats.
-fn record_readers(chosen: Option<&Interpreter>) -> Check {
-    let libraries = "pyuff npTDMS h5py pyarrow";
+/// Optional `libraries` of Python, under one `name`.
+fn libraries(chosen: Option<&Interpreter>, name: &str, libraries: &str, needed_for: &str) -> Check {
     let script = format!(
         "import importlib.metadata as m\nfor n in '{libraries}'.split():\n try: print(n, m.version(n))\n except m.PackageNotFoundError: pass"
     );
@@ -238,10 +239,9 @@ fn record_readers(chosen: Option<&Interpreter>) -> Check {
         Some(String::from_utf8_lossy(&output.stdout).trim().replace('\n', ", "))
     });
     Check {
-        name: "record formats".to_owned(),
+        name: name.to_owned(),
         found: listed.filter(|listed| !listed.is_empty()),
-        needed_for: "measured records as UFF 58, TDMS, MATLAB 7.3, HDF5 and Parquet (`--measured`)"
-            .to_owned(),
+        needed_for: needed_for.to_owned(),
         install: match chosen {
             Some(i) => format!("{} -m pip install {libraries}", i.path.display()),
             None => format!("pip install {libraries}"),

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-const COMMANDS: [&str; 19] = [
+const COMMANDS: [&str; 20] = [
     "reduced",
     "reference",
     "compare",
@@ -23,6 +23,7 @@ const COMMANDS: [&str; 19] = [
     "bench",
     "stress",
     "doctor",
+    "fmu",
     "schema",
     "new",
     "completions",

@@ -1,14 +1,14 @@
 //! The page inside a unit for co-simulation that says what it does.
 
-use crate::format::{model_name, prefixed, with_unit};
+use crate::format::{model_name, prefixed, short, with_unit};
 use crate::report::page::html::{page, scrolled};
 use crate::result::Summary;
 use crate::scene::Scene;
-use impactcheck_fmu::variables::{Role, Type, Variable};
+use impactcheck_fmu::variables::{Role, Type, UnitVariable};
 use maud::{Markup, html};
 
 /// The page of a unit of `scene` with these `variables`, by the `version` of the standard; `summary` is the result with the scene's numbers.
-pub fn unit_page(scene: &Scene, summary: &Summary, version: &str, variables: &[Variable]) -> String {
+pub fn unit_page(scene: &Scene, summary: &Summary, version: &str, variables: &[UnitVariable]) -> String {
     let model = model_name(summary.model.as_deref().unwrap_or("?"), summary.modes);
     let machine = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
     let delay = summary.bender.map(|bender| bender.drive.strike_delay);
@@ -52,16 +52,16 @@ pub fn unit_page(scene: &Scene, summary: &Summary, version: &str, variables: &[V
     page(&format!("{} · impactcheck", scene.name), &[], &body, &html! {})
 }
 
-fn table(title: &str, variables: &[Variable], belongs: fn(&Role) -> bool) -> Markup {
-    let own: Vec<&Variable> = variables.iter().filter(|variable| belongs(&variable.role)).collect();
-    let start = |variable: &Variable| match variable.kind {
+fn table(title: &str, variables: &[UnitVariable], belongs: fn(&Role) -> bool) -> Markup {
+    let own: Vec<&UnitVariable> = variables.iter().filter(|variable| belongs(&variable.role)).collect();
+    let start = |variable: &UnitVariable| match variable.kind {
         Type::Boolean => (variable.start != 0.0).to_string(),
-        _ => variable.start.to_string(),
+        _ => short(variable.start),
     };
     html! {
         @if !own.is_empty() {
             h3 { (title) }
-            (scrolled(title, &html! { table {
+            (scrolled(title, &html! { table.facts {
                 thead { tr {
                     th scope="col" { "Name" } th scope="col" { "Unit" }
                     @if !own[0].is_output() { th scope="col" { "Start" } }
