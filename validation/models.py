@@ -22,9 +22,9 @@ OF_KIND = {"plate-impact": ("A", "B", "C"), "impact": ("C",), "seal-seat": ("C",
 
 
 def reason(stderr: str) -> str:
-    """The sentence of an error, which is broken into lines with bars before them."""
+    """The sentence of an error, which may be broken into lines with bars before them."""
     sentence = stderr[stderr.rfind("\u00d7") + 1 :].split("help:")[0]
-    return " ".join(sentence.replace("\u2502", " ").split())
+    return " ".join(sentence.replace("\u2502", " ").split()).rpartition("error: ")[2]
 
 
 def results(path: Path, program: Path) -> Row:
