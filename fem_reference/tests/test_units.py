@@ -345,13 +345,85 @@ def test_a_unit_without_its_binary_or_token_does_not_begin(
 def test_steps_may_end_at_the_last_release(
     units: dict[str, Path], folders: dict[str, Path], launches: list[Launch]
 ) -> None:
+    """At once over there, wherever the simulation's clock stands."""
     instance = Instance(units["3"], folders["3"], early=True)
-    instance.step(0.0, 1e-3)
+    draw = random.Random(1)
+    for _ in range(50):
+        start = 10.0 ** draw.uniform(-6.0, 1.0)
+        instance.step(0.0, start)
+        instance.set("launch", True)
+        _, _, early, reached = instance.step(start, 1e-3)
+        assert early and instance.get("impact_over") == [True]
+        assert instance.get("last_release") == [reached]
+        expected = start + launches[0].result["outer_contact_end"]
+        assert reached == pytest.approx(expected, rel=1e-15, abs=1e-13)
+        assert instance.step(reached, 1e-3)[2] is False
+        instance.fmu.reset()
+        instance.ready()
+    instance.close()
+
+
+@pytest.mark.parametrize(
+    ("scene", "strikes_later"),
+    [
+        ("scenes/examples/rocker-bender.toml", True),
+        ("scenes/validation/stack.toml", False),
+        ("scenes/seal-seat-improved.toml", False),
+        ("scenes/validation/friction.toml", False),
+    ],
+)
+def test_every_kind_gives_the_results_of_the_command(
+    scene: str, strikes_later: bool, tmp_path: Path
+) -> None:
+    """Launched in the initialization, over in one step or after some."""
+    file = tmp_path / "unit.fmu"
+    program("fmu", scene, "-q", "-o", file)
+    expected = json.loads(program("reduced", scene, "--json", "-q"))
+    instance = Instance(file, Path(extract(str(file), str(tmp_path / "mit ü und %"))))
+    for steps in (1, 7):
+        instance.fmu.reset()
+        instance.fmu.enterInitializationMode(startTime=0.0)
+        instance.set("launch", True)
+        instance.fmu.exitInitializationMode()
+        length = expected.get("strike_delay", 0.0) + 2e-3
+        for step in range(steps):
+            instance.step(step * length / steps, length / steps)
+        assert instance.get("impact_over") == [True]
+        outputs = [
+            n for n in instance.references if expected.get(n) is not None and n != "warnings"
+        ]
+        assert "first_frequency" in outputs
+        for name, value in zip(outputs, instance.get(*outputs), strict=True):
+            if name in CURVES or name.startswith(("sphere_velocity_", "actuator_velocity")):
+                name = f"{name}_final" if f"{name}_final" in expected else name
+            assert value == pytest.approx(expected[name], rel=1e-9), name
+        valid = [not expected["warnings"]]
+        assert instance.get("valid") == valid
+        assert instance.get("warnings") == [len(expected["warnings"])]
+        [contact] = instance.get("first_contact")
+        assert (contact > 1e-4) is strikes_later
+    instance.close()
+
+
+def test_a_drive_may_stand_at_no_voltage(tmp_path: Path) -> None:
+    """An input passes through 0; only a launch needs more."""
+    file = tmp_path / "stack.fmu"
+    program("fmu", "scenes/validation/stack.toml", "-q", "-o", file)
+    instance = Instance(file, Path(extract(str(file), str(tmp_path / "unit"))))
+    instance.set("outer.voltage", 0.0)
+    instance.step(0.0, 1e-4)
     instance.set("launch", True)
-    _, _, early, reached = instance.step(1e-3, 1e-3)
-    assert early and instance.get("impact_over") == [True]
-    assert reached - 1e-3 == pytest.approx(launches[0].result["outer_contact_end"], rel=1e-9)
-    assert instance.step(reached, 1e-3)[2] is False
+    refused(ERROR, lambda: instance.step(1e-4, 1e-4))
+    assert "`outer.voltage`" in instance.log[-1][1] or "`outer.stroke`" in instance.log[-1][1]
+    peaks = []
+    for voltage in (45.0, 90.0):
+        instance.fmu.reset()
+        instance.ready()
+        instance.set("outer.voltage", voltage)
+        instance.set("launch", True)
+        instance.step(0.0, 1e-3)
+        peaks += instance.get("outer_force_peak")
+    assert 0.2 < peaks[0] / peaks[1] < 0.6
     instance.close()
 
 
@@ -430,17 +502,32 @@ def test_what_is_no_unit_is_named(tmp_path: Path) -> None:
         answer(asked(tmp_path / "none.fmu", {"efficiency": "efficiency"}, {}))
 
 
-def test_units_of_other_prefixes_are_converted(units: dict[str, Path], tmp_path: Path) -> None:
-    """The same unit, whose description says that its metre per second is one of 1/1000."""
+MILLI = (
+    b'<Unit name="m/s"><BaseUnit m="1" s="-1"/>',
+    b'<Unit name="m/s"><BaseUnit m="1" s="-1" factor="0.001"/>',
+)
+BY_TYPE = (
+    (
+        b"<LogCategories>",
+        b'<TypeDefinitions><Float64Type name="V" unit="m/s"/></TypeDefinitions><LogCategories>',
+    ),
+    (b'along z" unit="m/s"/>', b'along z" declaredType="V"/>'),
+)
+
+
+@pytest.mark.parametrize("changes", [(MILLI,), (MILLI, *BY_TYPE)])
+def test_units_of_other_prefixes_are_converted(
+    units: dict[str, Path], tmp_path: Path, changes: tuple[tuple[bytes, bytes], ...]
+) -> None:
+    """The same unit whose "m/s" is 1 mm/s, by its description; stated by variable or by type."""
     file = tmp_path / "milli.fmu"
     with zipfile.ZipFile(units["3"]) as source, zipfile.ZipFile(file, "w") as target:
         for entry in source.infolist():
             content = source.read(entry)
             if entry.filename == "modelDescription.xml":
-                content = content.replace(
-                    b'<Unit name="m/s"><BaseUnit m="1" s="-1"/>',
-                    b'<Unit name="m/s"><BaseUnit m="1" s="-1" factor="0.001"/>',
-                )
+                for old, new in changes:
+                    assert old in content
+                    content = content.replace(old, new)
             target.writestr(entry, content)
     found = answer(asked(file, {"outer_velocity": "outer_velocity"}, {"launch": True}))
     assert found["history"]["outer_velocity"][0] == pytest.approx(-0.55e-3)
@@ -456,3 +543,16 @@ def test_the_system_example_gives_the_guides_table(tmp_path: Path) -> None:
     rows = re.findall(r"^\| (\d+) V \| ([\d.]+) ms \| (\d+) mm/s \| (yes|no) \|$", page, flags=re.M)
     printed = re.findall(r"^ *(\d+) V +([\d.]+) ms +(\d+) mm/s +(yes|no) ", run.stdout, flags=re.M)
     assert len(rows) == 5 and rows == printed
+
+
+def test_what_a_unit_prints_is_no_part_of_the_answer() -> None:
+    script = """
+import os
+from fem_reference.units import simulate
+from fem_reference.units.command import UNIT
+simulate.answer = lambda _: {"printed": os.write(1, b"hello from the unit")}
+UNIT.run(None)
+"""
+    command = [sys.executable, "-c", script]
+    run = subprocess.run(command, cwd=ROOT, input="{}", capture_output=True, text=True, check=True)
+    assert json.loads(run.stdout) == {"printed": 19} and "hello from the unit" in run.stderr

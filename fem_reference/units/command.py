@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from typing import Any
 
@@ -24,7 +25,11 @@ def _unit(_: argparse.Namespace) -> None:
     from .simulate import answer
 
     question: dict[str, Any] = json.load(sys.stdin)
-    print(json.dumps(answer(question)))
+    # what a unit prints goes to standard error: it must not stand in the answer
+    out = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
+    with out:
+        out.write(json.dumps(answer(question)))
 
 
 UNIT = Study("simulates a Functional Mock-up Unit of a scene", _arguments, _unit)

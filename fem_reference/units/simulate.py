@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import shutil
-import sys
-from contextlib import redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -79,6 +77,9 @@ def answer(question: dict[str, Any]) -> dict[str, Any]:
     for name, variable in variables.items():
         values = variable.in_si(found[variable.name])
         if name in unit["curves"]:
+            if not np.isfinite(values).all():
+                at = time[~np.isfinite(values)][0]
+                raise SolverError(f"{file.name}: {variable.name!r} is not finite at {at:g} s")
             history[name] = values[last].tolist()
         else:
             document[name] = float(values[-1]) if math.isfinite(values[-1]) else None
@@ -98,19 +99,17 @@ def _simulate(
     folder = extract(str(file))
     said: list[str] = []
     try:
-        # what a unit prints must not stand in the answer
-        with redirect_stdout(sys.stderr):
-            return simulate_fmu(
-                folder,
-                start_time=0.0,
-                stop_time=end,
-                output_interval=interval,
-                fmi_type=INTERFACES[interface],
-                relative_tolerance=TOLERANCE if interface == EXCHANGE else None,
-                start_values=start,
-                output=sorted({variable.name for variable in variables.values()}),
-                logger=lambda *message: said.append(_text(message[-1])),
-            )
+        return simulate_fmu(
+            folder,
+            start_time=0.0,
+            stop_time=end,
+            output_interval=interval,
+            fmi_type=INTERFACES[interface],
+            relative_tolerance=TOLERANCE if interface == EXCHANGE else None,
+            start_values=start,
+            output=sorted({variable.name for variable in variables.values()}),
+            logger=lambda *message: said.append(_text(message[-1])),
+        )
     except Exception as error:
         reasons = " ".join([f"{error}.", *said[-3:]])
         raise SolverError(f"{file.name}: the simulation of the unit failed: {reasons}") from error
@@ -149,13 +148,15 @@ def _variable(described: Any, own: str, name: str, unit: str | None) -> Variable
     variable = _known(described, own, key)
     if unit is None:
         raise SceneError(f"{key}: the scene has no curve and no quantity {name!r}")
-    stated = next((u for u in described.unitDefinitions if u.name == variable.unit), None)
-    base = getattr(stated, "baseUnit", None)
-    if base is None:
+    named = variable.unit or getattr(variable.declaredType, "unit", None)
+    if named is None:
         return Variable(own, 1.0, 0.0)
+    base = next((u.baseUnit for u in described.unitDefinitions if u.name == named), None)
+    if base is None:
+        raise SceneError(f"{key}: the unit does not define {named!r}, in which {own!r} is")
     exponents = {k: getattr(base, k) for k in ("kg", "m", "s", "A", "K", "mol", "cd", "rad")}
     if {k: e for k, e in exponents.items() if e} != EXPONENTS.get(unit, {}):
-        raise SceneError(f"{key}: {own!r} is in {variable.unit}, but {name} is in {unit}")
+        raise SceneError(f"{key}: {own!r} is in {named}, but {name} is in {unit}")
     return Variable(own, float(base.factor or 1.0), float(base.offset or 0.0))
 
 

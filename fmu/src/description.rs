@@ -145,7 +145,7 @@ fn values(variable: &UnitVariable) -> Vec<(&'static str, String)> {
     if variable.unit != "1" && variable.kind == Type::Real {
         stated.push(("unit", variable.unit.to_owned()));
     }
-    if let Role::Field(field) | Role::Voltage(field) = &variable.role {
+    if let Role::Field(field) = &variable.role {
         let [low, high] = field.limits();
         // a kind of field that admits 0 below its least number has this one in its file
         stated.extend(
@@ -242,8 +242,10 @@ fn attributes(list: &[(&str, String)]) -> String {
     })
 }
 
+/// `text` as an attribute has it; what XML forbids is a space.
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    let plain = text.replace(|c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}'), " ");
+    plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

@@ -4,7 +4,9 @@
 //! As [`crate::fmi3`].
 #![expect(clippy::missing_safety_doc, reason = "the standard states how these functions are called")]
 
-use crate::instance::{Boolean2, Instance, InstanceLog, LogMessage2, Logger, Phase, Saved, Status, text};
+use crate::instance::{
+    Boolean2, Instance, InstanceLog, LogMessage2, Logger, Phase, Saved, Status, given, text,
+};
 use crate::unit::Refusal;
 use crate::variables::Type;
 use std::ffi::{c_char, c_int, c_void};
@@ -68,9 +70,10 @@ pub unsafe extern "C" fn fmi2Instantiate(
     Instance::create(log, token, &path_of(&resources.to_string_lossy()), false)
 }
 
-/// The path behind a URI such as `file:///tmp/my%20unit/resources`.
+/// The path behind a URI such as `file:///tmp/my%20unit/resources`, with or without host.
 fn path_of(uri: &str) -> PathBuf {
-    let path = uri.strip_prefix("file://").map_or(uri, |rest| &rest[rest.find('/').unwrap_or(0)..]);
+    let local = uri.get(..5).filter(|scheme| scheme.eq_ignore_ascii_case("file:")).map_or(uri, |_| &uri[5..]);
+    let path = local.strip_prefix("//").map_or(local, |rest| &rest[rest.find('/').unwrap_or(0)..]);
     // "/C:/..." of Windows
     let path = if path.as_bytes().get(2) == Some(&b':') { path.trim_start_matches('/') } else { path };
     let (mut bytes, mut rest) = (Vec::new(), path.as_bytes());
@@ -248,7 +251,8 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
 ) -> Status {
     unsafe {
         Instance::call(instance, "fmi2SerializedFMUstateSize", &ANY, |own| {
-            *size = own.serialized(state)?.len();
+            let length = own.serialized(state)?.len();
+            *given(size.as_mut())? = length;
             Ok(())
         })
     }
@@ -285,7 +289,9 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
 ) -> Status {
     unsafe {
         Instance::call(instance, "fmi2DeSerializeFMUstate", &ANY, |own| {
-            *state = own.deserialized(slice::from_raw_parts(bytes, size))?;
+            let place = given(state.as_mut())?;
+            let bytes = if bytes.is_null() { &[][..] } else { slice::from_raw_parts(bytes, size) };
+            *place = own.deserialized(bytes)?;
             Ok(())
         })
     }
@@ -297,7 +303,7 @@ pub unsafe extern "C" fn fmi2GetRealStatus(instance: *mut Instance, what: c_int,
     unsafe {
         Instance::call(instance, "fmi2GetRealStatus", &ANY, |own| match what {
             LAST_SUCCESSFUL_TIME => {
-                *value = own.unit.get(0, Type::Real)?;
+                *given(value.as_mut())? = own.unit.get(0, Type::Real)?;
                 Ok(())
             }
             _ => Err(Refusal::Error("steps end at once: there is no such status".into())),
@@ -342,6 +348,8 @@ mod tests {
         for (uri, path) in [
             ("file:///tmp/my%20unit/resources", "/tmp/my unit/resources"),
             ("file://localhost/tmp/r", "/tmp/r"),
+            ("file:/tmp/r", "/tmp/r"),
+            ("FILE:///tmp/r", "/tmp/r"),
             ("/tmp/100%", "/tmp/100%"),
             ("file:///C:/unit/resources", "C:/unit/resources"),
         ] {

@@ -5,7 +5,7 @@
 //! with 0.
 #![expect(clippy::missing_safety_doc, reason = "the standard states how these functions are called")]
 
-use crate::instance::{Instance, InstanceLog, LogMessage3, Logger, Phase, Saved, Status, text};
+use crate::instance::{Instance, InstanceLog, LogMessage3, Logger, Phase, Saved, Status, given, text};
 use crate::unit::Refusal;
 use crate::variables::Type;
 use std::ffi::{c_char, c_void};
@@ -236,7 +236,8 @@ pub unsafe extern "C" fn fmi3SerializedFMUStateSize(
 ) -> Status {
     unsafe {
         Instance::call(instance, "fmi3SerializedFMUStateSize", &ANY, |own| {
-            *size = own.serialized(state)?.len();
+            let length = own.serialized(state)?.len();
+            *given(size.as_mut())? = length;
             Ok(())
         })
     }
@@ -270,7 +271,9 @@ pub unsafe extern "C" fn fmi3DeserializeFMUState(
 ) -> Status {
     unsafe {
         Instance::call(instance, "fmi3DeserializeFMUState", &ANY, |own| {
-            *state = own.deserialized(slice::from_raw_parts(bytes, size))?;
+            let place = given(state.as_mut())?;
+            let bytes = if bytes.is_null() { &[][..] } else { slice::from_raw_parts(bytes, size) };
+            *place = own.deserialized(bytes)?;
             Ok(())
         })
     }
@@ -285,7 +288,7 @@ pub unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
 ) -> Status {
     unsafe {
         Instance::call(instance, "fmi3GetNumberOfVariableDependencies", &ANY, |_| {
-            *count = 0;
+            *given(count.as_mut())? = 0;
             Ok(())
         })
     }

@@ -53,48 +53,52 @@ impl LaunchedImpact {
         self.summary().last_contact().unwrap_or(end)
     }
 
-    /// Value of `output` after `time` s since the launch at `launch`; `series` shares bodies with the model that predictions need.
+    /// Whether nothing that the run leaves open is wanted: it was not cut, but a stack presses on for ever.
+    fn is_whole(&self) -> bool {
+        self.summary().last_contact().is_some() || self.summary().stack.is_some()
+    }
+
+    /// What the user has to know of it, in sentences.
+    pub fn remarks(&self) -> Vec<String> {
+        let (summary, kind) = (self.summary(), impactcheck_physics::kinds::of(&self.scene));
+        let open: Vec<&str> = summary.undetermined().filter(|name| kind.has(&self.scene, name)).collect();
+        let open = (!open.is_empty()).then(|| format!("the run does not determine {}", open.join(", ")));
+        summary.warnings.iter().cloned().chain(open).collect()
+    }
+
+    /// Value of `output` at `time` s, with the first contact and the last release at `events`, all times of the simulation; `series` shares
+    /// bodies with the model that predictions need.
     pub fn value(
         &self,
-        source: &UnitSource,
-        series: &dyn Series,
+        (source, series): (&UnitSource, &dyn Series),
         output: Output,
-        launch: f64,
+        events: [f64; 2],
         time: f64,
     ) -> f64 {
-        let since_touch = time - self.delay();
-        let is_over = since_touch >= self.duration();
+        let [contact, release] = events;
+        let is_over = time >= release;
         let once_over = |value: f64| if is_over { value } else { 0.0 };
         let truth = |is_true: bool| f64::from(u8::from(is_over && is_true));
         let summary = self.summary();
         match output {
-            Output::Touch | Output::Curve(_) | Output::Impulse(_) if since_touch < 0.0 => 0.0,
-            Output::Curve(name) => self.curve(name, since_touch),
-            Output::Impulse(force) => self.impulse(force, since_touch),
+            Output::Contact | Output::Curve(_) | Output::Impulse(_) if time < contact => 0.0,
+            Output::Curve(name) => self.curve(name, time - contact),
+            Output::Impulse(force) => self.impulse(force, time - contact),
             Output::Over => truth(true),
-            Output::Touch => launch + self.delay(),
-            Output::Release => once_over(launch + self.delay() + self.duration()),
+            Output::Contact => contact,
+            Output::Release => once_over(summary.last_contact().map_or(f64::NAN, |_| release)),
             Output::Quantity(quantity) => once_over(summary.value(quantity.name).unwrap_or(f64::NAN)),
-            Output::Valid => truth(self.is_valid()),
+            Output::Valid => truth(self.is_whole() && summary.warnings.is_empty()),
             Output::Warnings => once_over(summary.warnings.len() as f64),
             Output::Predicted if is_over => truth(self.prediction(source, series).is_ok()),
             Output::Low(name) if is_over => self.interval(source, series, name)[0],
             Output::High(name) if is_over => self.interval(source, series, name)[1],
             Output::Predicted | Output::Low(_) | Output::High(_) => 0.0,
             Output::Shifts => truth(summary.flight.as_ref().is_some_and(|flight| flight.seat == Seat::Other)),
-            Output::Landing => once_over(
-                summary
-                    .flight
-                    .as_ref()
-                    .map_or(f64::NAN, |flight| launch + self.delay() + self.duration() + flight.time),
-            ),
+            Output::Landing => {
+                once_over(summary.flight.as_ref().map_or(f64::NAN, |flight| release + flight.time))
+            }
         }
-    }
-
-    /// Whether every quantity is determined and nothing is warned of.
-    fn is_valid(&self) -> bool {
-        let (summary, kind) = (self.summary(), impactcheck_physics::kinds::of(&self.scene));
-        summary.warnings.is_empty() && !summary.undetermined().any(|name| kind.has(&self.scene, name))
     }
 
     /// Displacement or velocity `t` s after the first contact.

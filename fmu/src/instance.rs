@@ -42,6 +42,8 @@ pub enum Phase {
     Step,
     /// After the last step.
     Terminated,
+    /// After a fault of the unit itself: it can only be freed.
+    Failed,
 }
 
 /// Function of the environment that takes log messages.
@@ -197,7 +199,10 @@ impl Instance {
             Ok(Ok(())) => return Status::Ok,
             Ok(Err(Refusal::Discard(reason))) => (Status::Discard, reason),
             Ok(Err(Refusal::Error(reason))) => (Status::Error, reason),
-            Err(_) => (Status::Fatal, "the unit has a fault".into()),
+            Err(_) => {
+                instance.phase = Phase::Failed;
+                (Status::Fatal, "the unit has a fault".into())
+            }
         };
         instance.log.write(status, &format!("{name}: {reason}"));
         status
@@ -359,6 +364,14 @@ impl Instance {
         self.log.is_on = is_on;
         Ok(())
     }
+}
+
+/// Where a result goes.
+///
+/// # Errors
+/// [`Refusal::Error`] of a null pointer.
+pub fn given<T>(place: Option<&mut T>) -> Result<&mut T, Refusal> {
+    place.ok_or_else(|| Refusal::Error("there is no place for the result: a pointer is null".into()))
 }
 
 /// The text at `pointer`; an empty one for null.

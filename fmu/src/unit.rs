@@ -32,9 +32,9 @@ fn wrong<T>(reason: impl Into<String>) -> Done<T> {
 /// An impact that was launched.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Launched {
-    /// Simulation time of the launch, s.
-    time: f64,
-    /// Values of all variables then.
+    /// Simulation times of the first contact and the last release, s.
+    events: [f64; 2],
+    /// Values of all variables at the launch.
     values: Vec<f64>,
     /// What came of it; computed again where a state comes from a file.
     #[serde(skip)]
@@ -116,9 +116,11 @@ impl ImpactUnit {
     /// Puts it into a `state` that it, or another instance of the same unit, was in.
     ///
     /// # Errors
-    /// [`Refusal::Error`] of a state of another unit; [`Refusal::Discard`] of one whose impact can't be computed.
+    /// [`Refusal::Error`] of a state of another unit, or of one whose impact can't be computed.
     pub fn set_state(&mut self, mut state: UnitState) -> Done {
-        if state.token != self.state.token || state.values.len() != self.variables.len() {
+        let launched = state.launched.as_ref().map_or(self.variables.len(), |launched| launched.values.len());
+        let lengths = [state.values.len(), launched];
+        if state.token != self.state.token || lengths != [self.variables.len(); 2] {
             return wrong(format!(
                 "the state belongs to another unit: its token is {}, that of this unit {}",
                 state.token, self.state.token
@@ -179,8 +181,8 @@ impl ImpactUnit {
     fn output(&self, output: Output) -> f64 {
         let Some(launched) = &self.state.launched else { return 0.0 };
         let Some(impact) = &launched.impact else { return 0.0 };
-        let since = self.state.time - launched.time;
-        impact.value(&self.source, &*self.series, output, launched.time, since)
+        let models = (&self.source, &*self.series);
+        impact.value(models, output, launched.events, self.state.time)
     }
 
     /// Sets a parameter or an input, a truth as 0 or 1.
@@ -192,10 +194,17 @@ impl ImpactUnit {
         match &variable.role {
             Role::Time => return wrong("`time` can't be set: steps advance it"),
             Role::Output(_) => return wrong(format!("`{}` is an output and can't be set", variable.name)),
-            Role::Field(field) | Role::Voltage(field) => {
+            Role::Field(field) => {
                 field.check(value).map_err(|rejected| Refusal::Discard(rejected.to_string()))?;
             }
-            Role::Arm | Role::Launch => {}
+            // an input may pass through what a launch can't have
+            Role::Voltage(_) if !value.is_finite() => {
+                return Err(Refusal::Discard(format!(
+                    "`{}` is {value} V, but it must be finite",
+                    variable.name
+                )));
+            }
+            Role::Voltage(_) | Role::Arm | Role::Launch => {}
         }
         self.state.values[reference as usize] = value;
         Ok(())
@@ -204,8 +213,8 @@ impl ImpactUnit {
     /// Steps from `time` by `step` s. With `may_stop` the step ends at a first contact or a last release within it.
     ///
     /// # Errors
-    /// [`Refusal::Error`] of a step that is not positive, or does not begin where the last one ended; [`Refusal::Discard`] if an impact is
-    /// launched that can't be computed.
+    /// [`Refusal::Error`] of a step that is not positive, does not begin where the last one ended, or launches an impact that can't be
+    /// computed. The unit is as before.
     pub fn step(&mut self, time: f64, step: f64, may_stop: bool) -> Done<Reached> {
         if !(step > 0.0 && step.is_finite()) {
             return wrong(format!("the communication step is {step:?} s, but it must be greater than 0 s"));
@@ -219,7 +228,8 @@ impl ImpactUnit {
         }
         let (mut next, remarks) = self.with_edges(time)?;
         let end = time + step;
-        let event = next.launched.as_ref().and_then(|launched| launched.event_within(time, end));
+        let events = next.launched.as_ref().map_or([f64::NAN; 2], |launched| launched.events);
+        let event = events.into_iter().find(|event| time < *event && *event < end);
         let early = event.filter(|_| may_stop);
         next.time = early.unwrap_or(end);
         self.state = next;
@@ -229,7 +239,7 @@ impl ImpactUnit {
     /// Ends the initialization: a launch that is set already begins now. What the user has to know of it.
     ///
     /// # Errors
-    /// [`Refusal::Discard`] of an impact that can't be computed.
+    /// [`Refusal::Error`] of an impact that can't be computed.
     pub fn start(&mut self) -> Done<Vec<String>> {
         let (next, remarks) = self.with_edges(self.state.time)?;
         self.state = next;
@@ -253,9 +263,10 @@ impl ImpactUnit {
         }
         if launches && next.armed {
             let impact = self.impact_of(&next.values)?;
-            remarks.extend(impact.summary().warnings.iter().cloned());
-            let values = next.values.clone();
-            next.launched = Some(Launched { time, values, impact: Some(Arc::new(impact)) });
+            remarks.extend(impact.remarks());
+            let contact = time + impact.delay();
+            let (events, values) = ([contact, contact + impact.duration()], next.values.clone());
+            next.launched = Some(Launched { events, values, impact: Some(Arc::new(impact)) });
             next.armed = false;
         } else if launches {
             remarks
@@ -267,8 +278,9 @@ impl ImpactUnit {
     /// The impact of the scene with these `values` of the variables.
     fn impact_of(&self, values: &[f64]) -> Done<LaunchedImpact> {
         let scene = self.source.template.with(&self.numbers(values));
-        let scene = scene.map_err(|rejected| Refusal::Discard(rejected.to_string()))?;
-        let failed = |error: Error| Refusal::Discard(format!("the impact can't be computed: {error}"));
+        let scene =
+            scene.map_err(|rejected| Refusal::Error(format!("the impact can't be launched: {rejected}")))?;
+        let failed = |error: Error| Refusal::Error(format!("the impact can't be computed: {error}"));
         LaunchedImpact::new(&self.source, &*self.series, scene).map_err(failed)
     }
 
@@ -291,15 +303,5 @@ impl ImpactUnit {
             .filter(|(_, value, start)| value != start)
             .map(|(field, value, _)| (field, value))
             .collect()
-    }
-}
-
-impl Launched {
-    /// The first contact or last release strictly between two times, the earlier one.
-    fn event_within(&self, start: f64, end: f64) -> Option<f64> {
-        let impact = self.impact.as_ref()?;
-        let touch = self.time + impact.delay();
-        let events = [touch, touch + impact.duration()];
-        events.into_iter().find(|event| start < *event && *event < end)
     }
 }

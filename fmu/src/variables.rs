@@ -42,7 +42,7 @@ pub enum Output {
     /// Whether the impact is over.
     Over,
     /// Time of the first contact.
-    Touch,
+    Contact,
     /// Time of the last release.
     Release,
     /// A quantity of the result.
@@ -116,12 +116,12 @@ impl Output {
                 text
             }
             Output::Impulse(force) => format!("Integral of {force} since the first contact"),
-            Output::Over => "Whether the impact is over: the results below are valid then, 0 before".into(),
-            Output::Touch => "Time of the first contact".into(),
-            Output::Release => "Time of the last release".into(),
+            Output::Over => "Whether the impact is over, or its run; the results are 0 before".into(),
+            Output::Contact => "Time of the first contact".into(),
+            Output::Release => "Time of the last release; NaN if the run was cut before".into(),
             Output::Quantity(quantity) => quantity.about.to_owned(),
-            Output::Valid => "Whether all results are determined and none has a warning".into(),
-            Output::Warnings => "Number of warnings, which the unit logs".into(),
+            Output::Valid => "Whether no result has a warning and the run was not cut".into(),
+            Output::Warnings => "Number of warnings; the log has them, if it is on".into(),
             Output::Predicted => "Whether 95 % intervals are known".into(),
             Output::Low(name) => format!(
                 "Lower end of the 95 % interval of what a reference would find for {name}; NaN if unknown"
@@ -176,7 +176,7 @@ pub fn variables(template: &Template) -> Vec<UnitVariable> {
         }
     }
     output("impact_over".into(), "1", Boolean, Output::Over);
-    output("first_contact".into(), "s", Real, Output::Touch);
+    output("first_contact".into(), "s", Real, Output::Contact);
     output("last_release".into(), "s", Real, Output::Release);
     let quantities = || kind.quantities().iter().filter(|quantity| kind.has(scene, quantity.name));
     for quantity in quantities() {

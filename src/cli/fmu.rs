@@ -4,7 +4,7 @@ use super::requested_model::{ModelRequest, RequestedModel};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::fmu::{UnitParts, number, packed};
+use crate::fmu::{UnitParts, launchable, number, packed};
 use crate::kinds::SharedBodies;
 use crate::scene::{Template, resolve};
 use clap::Args;
@@ -39,19 +39,19 @@ impl clap::ValueEnum for Fmi {
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(match self.0 {
-            Version::Two => "2",
-            Version::Three => "3",
-        }))
+        Some(match self.0 {
+            Version::Two => PossibleValue::new("2").alias("2.0"),
+            Version::Three => PossibleValue::new("3").alias("3.0"),
+        })
     }
 }
 
 /// Runs the model once, so that a unit which can't compute is not written, and writes the unit.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let template = Template::read(resolve(&arguments.scene)?)?;
+    let template = launchable(&Template::read(resolve(&arguments.scene)?)?)?;
     let (scene, request) = (template.scene(), &arguments.request);
     let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.fmu", scene.name)));
-    if out.extension().is_none_or(|kind| kind != "fmu") {
+    if out.extension().is_none_or(|kind| !kind.eq_ignore_ascii_case("fmu")) {
         let out = out.display();
         return Err(Error::Usage(format!("-o {out}: a Functional Mock-up Unit is a file that ends in .fmu")));
     }

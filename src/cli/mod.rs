@@ -116,7 +116,7 @@ enum Command {
     Stress(stress::Arguments),
     /// Write a scene as an FMU, a unit of a system simulation
     #[command(
-        after_help = "Examples: impactcheck fmu scaled-plate-r10 -o plate.fmu\n          impactcheck fmu rocker-flight --fmi 2 -o valve.fmu"
+        after_help = "Examples: impactcheck fmu scaled-plate-r10 -o plate.fmu\n          impactcheck fmu my-valve.toml --fmi 2 -o valve.fmu"
     )]
     Fmu(fmu::Arguments),
     /// Show what is installed and how to install what is missing

@@ -32,7 +32,7 @@ pub fn embed(library: &'static [u8]) {
 /// What a unit is made of.
 #[derive(Debug)]
 pub struct UnitParts<'a> {
-    /// The scene.
+    /// The scene, [`launchable`].
     pub template: &'a Template,
     /// Its result with the numbers of the scene: which model, how long.
     pub outcome: &'a Outcome,
@@ -142,18 +142,38 @@ impl Archive {
     }
 }
 
-/// The scene file as it lies in the unit: with the record it names, without programs of the user's, its body's file beside it.
+/// What a unit does not need of a scene: programs and tolerances of comparisons, further impacts of a series, vibration of the valve.
+const OMITTED: [&str; 4] = ["external", "tolerances", "series", "vibration"];
+
+/// The scene of `template` as a unit launches it: a single impact.
+///
+/// # Errors
+/// Those of a scene file.
+pub fn launchable(template: &Template) -> Result<Template> {
+    let name = &template.scene().name;
+    let mut table = table(&template.text_with(name, &[])?)?;
+    OMITTED.iter().for_each(|key| drop(table.remove(*key)));
+    Template::parse(name, &text(&table)?)
+}
+
+/// The file of the scene of `template` as it lies in the unit, its body's file beside it.
 fn scene_file(template: &Template) -> Result<String> {
     let scene = template.scene();
-    let text = template.text_with(&scene.name, &[])?;
-    let mut table: toml::Table = text.parse().map_err(|e| Error::Internal(format!("the scene file: {e}")))?;
-    table.remove("external");
+    let mut table = table(template.text())?;
     if let (Some(file), Some(toml::Value::Table(body))) =
         (kinds::of(scene).body_file(scene), table.get_mut("body"))
     {
         body.insert("file".into(), body_name(file).into());
     }
-    toml::to_string(&table).map_err(|e| Error::Internal(format!("writing the scene file: {e}")))
+    text(&table)
+}
+
+fn table(text: &str) -> Result<toml::Table> {
+    text.parse().map_err(|e| Error::Internal(format!("the scene file: {e}")))
+}
+
+fn text(table: &toml::Table) -> Result<String> {
+    toml::to_string(table).map_err(|e| Error::Internal(format!("writing the scene file: {e}")))
 }
 
 /// Name of the file of a body in the unit's resources.

@@ -184,8 +184,18 @@ impl Checker<'_> {
     /// The names that the scene's programs have, noting every one that something else has already.
     pub(super) fn external_names(&mut self, root: &DeTable) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
-        let entries = root.get("external").and_then(|list| list.get_ref().as_array());
-        for value in entries.into_iter().flatten().filter_map(|entry| entry.get_ref().get("name")) {
+        let entries =
+            || root.get("external").and_then(|list| list.get_ref().as_array()).into_iter().flatten();
+        for entry in entries().filter_map(|entry| entry.get_ref().as_table()) {
+            let of_units = ["start", "interface"].into_iter().filter(|_| !entry.contains_key("fmu"));
+            for (key, value) in of_units.filter_map(|key| entry.get_key_value(key)) {
+                let path = format!("external.{}", key.get_ref());
+                let place = Place { path: &path, span: key.span() };
+                let help = "remove it, or name a unit with `fmu`".to_owned();
+                self.fault::<()>(&place, value, "but only a unit has it", "of a unit", help);
+            }
+        }
+        for value in entries().filter_map(|entry| entry.get_ref().get("name")) {
             let Some(name) = value.get_ref().as_str() else { continue };
             let is_taken = |taken: &str| taken.eq_ignore_ascii_case(name);
             let of_models = MODELS.iter().map(|model| model.name).chain(TAKEN);
@@ -260,6 +270,7 @@ mod tests {
             (entry("mine").replace("[\"true\"]", "\"true\""), "but it must be a list"),
             (entry("mine").replace("\"true\"", "\"\""), "1 to 64 texts, the first not empty"),
             (entry("mine") + "timeout = \"0 s\"", "greater than 0 s"),
+            (entry("mine") + "interface = \"co-simulation\"", "only a unit has it"),
             ("[[external]]\nname = \"mine\"".into(), "what runs is missing"),
             (entry("mine") + "fmu = \"a.fmu\"\nvariables = { efficiency = \"e\" }", "both give what runs"),
             (entry("mine").replace("command = [\"true\"]", "fmu = \"a.fmu\""), "variables"),

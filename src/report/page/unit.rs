@@ -33,7 +33,7 @@ pub fn unit_page(scene: &Scene, summary: &Summary, version: &str, variables: &[U
             li { "Do not couple contact forces across units: they are too stiff. The unit gives velocities and impulses." }
             li { "Do not change parameters to change an impact that is under way: they count for the next launch." }
             li { "Do not use results while " code { "impact_over" } " is false: they are 0." }
-            li { "Do not ignore " code { "valid" } ": false means that a result has a warning. The unit logs it." }
+            li { "Do not ignore " code { "valid" } ". If it is false, turn the log on: it has the warnings." }
             li { "Do not step back in time without restoring a state of the unit." }
         }
         h2 { "Variables" }
