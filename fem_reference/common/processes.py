@@ -22,6 +22,8 @@ LOOK = 0.3
 """Time in which the load of the machine is measured, s."""
 SPARE = 0.3
 """Cores' worth of other work that does not count."""
+LAST_WORDS = 0.5
+"""Time that the launcher has to pass on why a process ends all others, s."""
 INHERITED = (
     *("PMIX_", "PMI_", "HYDI_", "OMPI_COMM_", "OMPI_UNIVERSE"),
     *("OMPI_MCA_ess", "OMPI_MCA_orte", "OMPI_MCA_pmix"),
@@ -160,6 +162,8 @@ def in_processes(arguments: argparse.Namespace, work: Callable[[Any], None]) -> 
         # The others may be waiting for this process: end them all.
         Progress().error(str(error))
         print(f"error: {error}", file=sys.stderr, flush=True)
+        # MPICH's launcher may drop what it has not passed on yet, as it does on a busy machine
+        time.sleep(LAST_WORDS)
         comm.Abort(error.exit_status)
     except Exception:
         if comm.size == 1:

@@ -4,7 +4,7 @@
 //! whole impact at its launch, with the program's own integrator, and then gives its course at any time: results do not depend on
 //! the communication steps.
 //!
-//! Data flows one way: [`source`] (what lies in the unit) -> [`variables`] -> [`unit`] (state, steps) with [`impact`] (one launch)
+//! Data flows one way: [`source`] (what lies in the unit) -> [`mod@variables`] -> [`mod@unit`] (state, steps) with [`impact`] (one launch)
 //! -> [`instance`] -> [`fmi3`], [`fmi2`] (the C interfaces). [`description`] writes `modelDescription.xml`.
 #![warn(missing_docs)]
 

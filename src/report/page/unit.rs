@@ -1,6 +1,6 @@
 //! The page inside a unit for co-simulation that says what it does.
 
-use crate::format::{model_name, prefixed, short, with_unit};
+use crate::format::{model_name, prefixed, with_unit};
 use crate::report::page::html::{page, scrolled};
 use crate::result::Summary;
 use crate::scene::Scene;
@@ -52,11 +52,22 @@ pub fn unit_page(scene: &Scene, summary: &Summary, version: &str, variables: &[U
     page(&format!("{} · impactcheck", scene.name), &[], &body, &html! {})
 }
 
+/// Where the text of a cell begins.
+const TOP: &str = "vertical-align:top";
+
+/// A number, with an exponent where it has many zeros.
+fn number(value: f64) -> String {
+    match value.abs() {
+        size if size != 0.0 && !(1e-3..1e6).contains(&size) => format!("{value:e}"),
+        _ => value.to_string(),
+    }
+}
+
 fn table(title: &str, variables: &[UnitVariable], belongs: fn(&Role) -> bool) -> Markup {
     let own: Vec<&UnitVariable> = variables.iter().filter(|variable| belongs(&variable.role)).collect();
     let start = |variable: &UnitVariable| match variable.kind {
         Type::Boolean => (variable.start != 0.0).to_string(),
-        _ => short(variable.start),
+        _ => number(variable.start),
     };
     html! {
         @if !own.is_empty() {
@@ -65,13 +76,13 @@ fn table(title: &str, variables: &[UnitVariable], belongs: fn(&Role) -> bool) ->
                 thead { tr {
                     th scope="col" { "Name" } th scope="col" { "Unit" }
                     @if !own[0].is_output() { th scope="col" { "Start" } }
-                    th scope="col" { "What it is" }
+                    th scope="col" style="width:60%" { "What it is" }
                 } }
                 tbody { @for variable in own { tr {
                     th scope="row" { code { (variable.name) } }
-                    td { @if variable.unit != "1" { (variable.unit) } }
-                    @if !variable.is_output() { td { (start(variable)) } }
-                    td { (variable.description) }
+                    td style=(TOP) { @if variable.unit != "1" { (variable.unit) } }
+                    @if !variable.is_output() { td style=(TOP) { (start(variable)) } }
+                    td style=(TOP) { (variable.description) }
                 } } }
             } }))
         }
