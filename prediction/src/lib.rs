@@ -90,7 +90,7 @@ pub fn predicted_errors(scene: &Scene, continuum: &Summary) -> Result<BTreeMap<&
 
 /// Speed of the outer body, m/s; NaN of kinds whose quantities have no scale of it.
 pub fn impact_speed(scene: &Scene) -> f64 {
-    kinds::of(scene).speed(scene)
+    kinds::of(scene).map_or(f64::NAN, |kind| kind.speed(scene))
 }
 
 /// Scenes of the base that are of the same group as another one.
@@ -106,7 +106,7 @@ impl Similar {
     /// # Errors
     /// A sentence: there are too few, or the scene's own numbers lie beyond theirs.
     pub fn of(scene: &Scene) -> Result<Self, String> {
-        let kind = kinds::of(scene);
+        let kind = kinds::of(scene)?;
         let (stratum, hash) = (kind.stratum(scene)?, scene.hash());
         let scenes: Vec<&SolvedScene> =
             solved().iter().filter(|other| other.stratum == stratum && other.hash != hash).collect();

@@ -26,7 +26,7 @@ impl Similarity {
     /// # Errors
     /// A sentence of scenes that the base has none like, and where the result does not tell.
     pub fn of(scene: &Scene, continuum: &Summary) -> Result<Self, String> {
-        let kind = kinds::of(scene);
+        let kind = kinds::of(scene)?;
         let results =
             kind.result_numbers(scene, continuum).ok_or("model C does not determine the contact")?;
         let numbers = kind.numbers(scene).into_iter().collect();

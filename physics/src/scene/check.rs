@@ -285,7 +285,11 @@ impl<'a> Checker<'a> {
     ) -> Option<Checked> {
         if entries.is_empty() {
             let help = needed(&Kind::Named(field), "").1;
-            return self.fault(place, value, "but it has no entry", "empty", help);
+            let message = match field.kind {
+                Kind::Material => "but it names no group",
+                _ => "but it has no entry",
+            };
+            return self.fault(place, value, message, "empty", help);
         }
         let mut found = Values::new();
         for (key, entry) in entries {

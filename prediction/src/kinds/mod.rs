@@ -82,12 +82,16 @@ impl Kind for physics::general_impact::Kind {
     }
 }
 
-/// All kinds.
+/// The kinds that the validation base has scenes of.
 const KINDS: [&dyn Kind; 3] =
     [&physics::plate_impact::Kind, &physics::seal_seat::Kind, &physics::general_impact::Kind];
 
 /// The kind of `scene`.
-pub(crate) fn of(scene: &Scene) -> &'static dyn Kind {
+///
+/// # Errors
+/// A sentence of a kind that the base has no scenes of.
+pub(crate) fn of(scene: &Scene) -> Result<&'static dyn Kind, String> {
     let name = physics::of(scene).name();
-    KINDS.into_iter().find(|kind| kind.name() == name).expect("every kind of the physics")
+    let found = KINDS.into_iter().find(|kind| kind.name() == name);
+    found.ok_or_else(|| format!("the validation base has no scenes of kind `{name}`"))
 }
