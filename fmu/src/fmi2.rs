@@ -7,6 +7,7 @@
 use crate::instance::{
     Boolean2, Instance, InstanceLog, LogMessage2, Logger, Phase, Saved, Status, given, text,
 };
+use crate::shared::{life, refused};
 use crate::unit::Refusal;
 use crate::variables::Type;
 use std::ffi::{c_char, c_int, c_void};
@@ -86,10 +87,17 @@ fn path_of(uri: &str) -> PathBuf {
     String::from_utf8_lossy(&bytes).into_owned().into()
 }
 
-/// `fmi2FreeInstance`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeInstance(instance: *mut Instance) {
-    unsafe { Instance::free(instance) };
+life! {
+    free: fmi2FreeInstance,
+    exit_initialization: fmi2ExitInitializationMode,
+    terminate: fmi2Terminate,
+    reset: fmi2Reset,
+    get_state: fmi2GetFMUstate,
+    set_state: fmi2SetFMUstate,
+    free_state: fmi2FreeFMUstate,
+    size_of_state: fmi2SerializedFMUstateSize,
+    serialize: fmi2SerializeFMUstate,
+    deserialize: fmi2DeSerializeFMUstate,
 }
 
 /// `fmi2SetDebugLogging`.
@@ -126,42 +134,6 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(instance: *mut Instance) ->
     unsafe {
         Instance::call(instance, "fmi2EnterInitializationMode", &[Phase::Instantiated], |own| {
             own.phase = Phase::Initialization;
-            Ok(())
-        })
-    }
-}
-
-/// `fmi2ExitInitializationMode`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2ExitInitializationMode(instance: *mut Instance) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi2ExitInitializationMode", &[Phase::Initialization], |own| {
-            let remarks = own.unit.start()?;
-            own.log.remark(&remarks);
-            own.phase = Phase::Step;
-            Ok(())
-        })
-    }
-}
-
-/// `fmi2Terminate`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Terminate(instance: *mut Instance) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi2Terminate", &[Phase::Step], |own| {
-            own.phase = Phase::Terminated;
-            Ok(())
-        })
-    }
-}
-
-/// `fmi2Reset`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Reset(instance: *mut Instance) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi2Reset", &ANY, |own| {
-            own.unit.reset();
-            own.phase = Phase::Instantiated;
             Ok(())
         })
     }
@@ -224,79 +196,6 @@ values! {
     Boolean: Boolean2, fmi2GetBoolean, fmi2SetBoolean, |value| Boolean2::from(value != 0.0), |value| f64::from(u8::from(value != 0));
 }
 
-/// `fmi2GetFMUstate`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetFMUstate(instance: *mut Instance, state: *mut *mut Saved) -> Status {
-    unsafe { Instance::call(instance, "fmi2GetFMUstate", &ANY, |own| own.save(state)) }
-}
-
-/// `fmi2SetFMUstate`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetFMUstate(instance: *mut Instance, state: *mut Saved) -> Status {
-    unsafe { Instance::call(instance, "fmi2SetFMUstate", &ANY, |own| own.restore(state)) }
-}
-
-/// `fmi2FreeFMUstate`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeFMUstate(instance: *mut Instance, state: *mut *mut Saved) -> Status {
-    unsafe { Instance::call(instance, "fmi2FreeFMUstate", &ANY, |own| own.forget(state)) }
-}
-
-/// `fmi2SerializedFMUstateSize`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
-    instance: *mut Instance,
-    state: *mut Saved,
-    size: *mut usize,
-) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi2SerializedFMUstateSize", &ANY, |own| {
-            let length = own.serialized(state)?.len();
-            *given(size.as_mut())? = length;
-            Ok(())
-        })
-    }
-}
-
-/// `fmi2SerializeFMUstate`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializeFMUstate(
-    instance: *mut Instance,
-    state: *mut Saved,
-    bytes: *mut u8,
-    size: usize,
-) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi2SerializeFMUstate", &ANY, |own| {
-            let found = own.serialized(state)?;
-            if found.len() > size {
-                let needed = found.len();
-                return Err(Refusal::Error(format!("the state takes {needed} bytes, there are {size}")));
-            }
-            ptr::copy_nonoverlapping(found.as_ptr(), bytes, found.len());
-            Ok(())
-        })
-    }
-}
-
-/// `fmi2DeSerializeFMUstate`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
-    instance: *mut Instance,
-    bytes: *const u8,
-    size: usize,
-    state: *mut *mut Saved,
-) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi2DeSerializeFMUstate", &ANY, |own| {
-            let place = given(state.as_mut())?;
-            let bytes = if bytes.is_null() { &[][..] } else { slice::from_raw_parts(bytes, size) };
-            *place = own.deserialized(bytes)?;
-            Ok(())
-        })
-    }
-}
-
 /// `fmi2GetRealStatus`: the time that the unit is at.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealStatus(instance: *mut Instance, what: c_int, value: *mut f64) -> Status {
@@ -309,21 +208,6 @@ pub unsafe extern "C" fn fmi2GetRealStatus(instance: *mut Instance, what: c_int,
             _ => Err(Refusal::Error("steps end at once: there is no such status".into())),
         })
     }
-}
-
-/// Functions for what the unit does not have: they are there, and refuse. Arguments besides the instance are not read.
-macro_rules! refused {
-    ($($name:ident,)*) => {$(
-        /// For what the unit does not have: refuses.
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $name(instance: *mut Instance) -> Status {
-            unsafe {
-                Instance::call(instance, stringify!($name), &ANY, |_| {
-                    Err(Refusal::Error("the unit does not have this".into()))
-                })
-            }
-        }
-    )*};
 }
 
 refused! {

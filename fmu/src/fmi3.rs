@@ -6,6 +6,7 @@
 #![expect(clippy::missing_safety_doc, reason = "the standard states how these functions are called")]
 
 use crate::instance::{Instance, InstanceLog, LogMessage3, Logger, Phase, Saved, Status, given, text};
+use crate::shared::{life, refused};
 use crate::unit::Refusal;
 use crate::variables::Type;
 use std::ffi::{c_char, c_void};
@@ -48,10 +49,17 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     Instance::create(log, token, Path::new(&*resources.to_string_lossy()), early_return_allowed)
 }
 
-/// `fmi3FreeInstance`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3FreeInstance(instance: *mut Instance) {
-    unsafe { Instance::free(instance) };
+life! {
+    free: fmi3FreeInstance,
+    exit_initialization: fmi3ExitInitializationMode,
+    terminate: fmi3Terminate,
+    reset: fmi3Reset,
+    get_state: fmi3GetFMUState,
+    set_state: fmi3SetFMUState,
+    free_state: fmi3FreeFMUState,
+    size_of_state: fmi3SerializedFMUStateSize,
+    serialize: fmi3SerializeFMUState,
+    deserialize: fmi3DeserializeFMUState,
 }
 
 /// `fmi3SetDebugLogging`.
@@ -84,46 +92,10 @@ pub unsafe extern "C" fn fmi3EnterInitializationMode(
     }
 }
 
-/// `fmi3ExitInitializationMode`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3ExitInitializationMode(instance: *mut Instance) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi3ExitInitializationMode", &[Phase::Initialization], |own| {
-            let remarks = own.unit.start()?;
-            own.log.remark(&remarks);
-            own.phase = Phase::Step;
-            Ok(())
-        })
-    }
-}
-
 /// `fmi3EnterStepMode`: without an event mode the unit is in it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3EnterStepMode(instance: *mut Instance) -> Status {
     unsafe { Instance::call(instance, "fmi3EnterStepMode", &[Phase::Step], |_| Ok(())) }
-}
-
-/// `fmi3Terminate`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3Terminate(instance: *mut Instance) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi3Terminate", &[Phase::Step], |own| {
-            own.phase = Phase::Terminated;
-            Ok(())
-        })
-    }
-}
-
-/// `fmi3Reset`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3Reset(instance: *mut Instance) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi3Reset", &ANY, |own| {
-            own.unit.reset();
-            own.phase = Phase::Instantiated;
-            Ok(())
-        })
-    }
 }
 
 /// `fmi3DoStep`.
@@ -209,76 +181,6 @@ values! {
     Boolean: bool, fmi3GetBoolean, fmi3SetBoolean, |value| value != 0.0, |value| f64::from(u8::from(value));
 }
 
-/// `fmi3GetFMUState`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetFMUState(instance: *mut Instance, state: *mut *mut Saved) -> Status {
-    unsafe { Instance::call(instance, "fmi3GetFMUState", &ANY, |own| own.save(state)) }
-}
-
-/// `fmi3SetFMUState`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetFMUState(instance: *mut Instance, state: *mut Saved) -> Status {
-    unsafe { Instance::call(instance, "fmi3SetFMUState", &ANY, |own| own.restore(state)) }
-}
-
-/// `fmi3FreeFMUState`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3FreeFMUState(instance: *mut Instance, state: *mut *mut Saved) -> Status {
-    unsafe { Instance::call(instance, "fmi3FreeFMUState", &ANY, |own| own.forget(state)) }
-}
-
-/// `fmi3SerializedFMUStateSize`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SerializedFMUStateSize(
-    instance: *mut Instance,
-    state: *mut Saved,
-    size: *mut usize,
-) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi3SerializedFMUStateSize", &ANY, |own| {
-            let length = own.serialized(state)?.len();
-            *given(size.as_mut())? = length;
-            Ok(())
-        })
-    }
-}
-
-/// `fmi3SerializeFMUState`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SerializeFMUState(
-    instance: *mut Instance,
-    state: *mut Saved,
-    bytes: *mut u8,
-    size: usize,
-) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi3SerializeFMUState", &ANY, |own| {
-            let found = own.serialized(state)?;
-            of_same_length(found.len(), size)?;
-            ptr::copy_nonoverlapping(found.as_ptr(), bytes, size);
-            Ok(())
-        })
-    }
-}
-
-/// `fmi3DeserializeFMUState`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3DeserializeFMUState(
-    instance: *mut Instance,
-    bytes: *const u8,
-    size: usize,
-    state: *mut *mut Saved,
-) -> Status {
-    unsafe {
-        Instance::call(instance, "fmi3DeserializeFMUState", &ANY, |own| {
-            let place = given(state.as_mut())?;
-            let bytes = if bytes.is_null() { &[][..] } else { slice::from_raw_parts(bytes, size) };
-            *place = own.deserialized(bytes)?;
-            Ok(())
-        })
-    }
-}
-
 /// `fmi3GetNumberOfVariableDependencies`: outputs depend on nothing at a communication point.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
@@ -344,21 +246,6 @@ fn only_co_simulation(environment: *mut c_void, log_message: Option<LogMessage3>
     let log = InstanceLog { name: c"".to_owned(), logger, environment, is_on: true };
     log.write(Status::Error, "the unit is for co-simulation only");
     ptr::null_mut()
-}
-
-/// Functions for what the unit does not have: they are there, and refuse. Arguments besides the instance are not read.
-macro_rules! refused {
-    ($($name:ident,)*) => {$(
-        /// For what the unit does not have: refuses.
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $name(instance: *mut Instance) -> Status {
-            unsafe {
-                Instance::call(instance, stringify!($name), &ANY, |_| {
-                    Err(Refusal::Error("the unit does not have this".into()))
-                })
-            }
-        }
-    )*};
 }
 
 refused! {

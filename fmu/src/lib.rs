@@ -14,6 +14,7 @@ pub mod fmi2;
 pub mod fmi3;
 pub mod impact;
 pub mod instance;
+mod shared;
 pub mod source;
 pub mod unit;
 pub mod variables;
