@@ -267,6 +267,8 @@ def back_and_again(instance: Instance, now: float, length: float) -> None:
     state = get()
     instance.step(now, 0.7 * length)
     values = instance.get(*CURVES, "impact_over")
+    # a state holds all of an instance
+    fmu.reset()
     put(state)
     instance.step(now, 0.7 * length)
     assert instance.get(*CURVES, "impact_over") == values
