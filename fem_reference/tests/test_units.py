@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import random
 import re
 import subprocess
@@ -558,3 +559,31 @@ UNIT.run(None)
     command = [sys.executable, "-c", script]
     run = subprocess.run(command, cwd=ROOT, input="{}", capture_output=True, text=True, check=True)
     assert json.loads(run.stdout) == {"printed": 19} and "hello from the unit" in run.stderr
+
+
+def test_a_unit_takes_part_in_a_comparison(
+    units: dict[str, Path], launches: list[Launch], tmp_path: Path
+) -> None:
+    """The gate passes on it, and refuses to run it without leave."""
+    scene = (ROOT / "scenes/scaled-plate-r10.toml").read_text()
+    names = [
+        "outer_velocity",
+        "inner_velocity",
+        *(n for n in launches[0].result if "force_peak" in n),
+    ]
+    variables = "\n".join(f'{name} = "{name}"' for name in ["efficiency", *names])
+    own = f'[[external]]\nname = "unit"\nfmu = "{units["3"]}"\nstart = {{ launch = true }}\n'
+    gated = f"[external.variables]\n{variables}\n[tolerances.unit]\nefficiency.absolute = 0.01\n"
+    file = tmp_path / "scaled-plate-r10.toml"
+    file.write_text(f"{scene}\n{own}\n{gated}")
+    out = ["--out", tmp_path / "report", "--models", "external"]
+    environment = os.environ | {"IMPACTCHECK_PYTHON": sys.executable}
+    command = [str(part) for part in (PROGRAM, "gate", file, *out)]
+    for leave, status, part in [
+        ([], 2, "wants to run the unit"),
+        (["--allow-external"], 0, "pass"),
+    ]:
+        run = subprocess.run(
+            [*command, *leave], env=environment, capture_output=True, text=True, check=False
+        )
+        assert run.returncode == status and part in run.stdout + run.stderr, run.stdout + run.stderr
