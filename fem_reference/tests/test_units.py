@@ -4,107 +4,30 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 import random
 import re
 import subprocess
 import sys
 import tomllib
-import zipfile
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from ..common.errors import SceneError
 from .program import ROOT
 
-fmpy = pytest.importorskip("fmpy")
-from fmpy import extract, fmi2, fmi3, read_model_description  # noqa: E402
-from fmpy.fmi1 import FMICallException  # noqa: E402
-from fmpy.validation import validate_fmu  # noqa: E402
+pytest.importorskip("fmpy")
+from fmpy import extract, fmi3, read_model_description
+from fmpy.validation import validate_fmu
 
-from ..units.simulate import answer  # noqa: E402
+from .unit_simulation import DISCARD, ERROR, Instance, plate_units, program, refused
 
-PROGRAM = ROOT / "target/release/impactcheck"
-DISCARD, ERROR = 2, 3
 PARAMETERS = ("plate.thickness", "outer.speed", "inner.radius", "materials.steel.youngs_modulus")
 """What the random launches vary, by up to a fifth."""
 CURVES = ("outer_displacement", "inner_displacement", "outer_velocity", "inner_velocity")
-
-
-def program(*arguments: object) -> str:
-    command = [str(PROGRAM), *map(str, arguments)]
-    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
-
-
-@dataclass
-class Instance:
-    """A unit in a simulation, its variables by name."""
-
-    file: Path
-    folder: Path
-    log: list[tuple[int, str]] = field(default_factory=list)
-    early: bool = False
-
-    def __post_init__(self) -> None:
-        self.described = read_model_description(str(self.file))
-        self.references = {v.name: v.valueReference for v in self.described.modelVariables}
-        self.types = {v.name: v.type for v in self.described.modelVariables}
-        self.is_3 = self.described.fmiVersion.startswith("3")
-        kind = fmi3.FMU3Slave if self.is_3 else fmi2.FMU2Slave
-        self.fmu = kind(
-            guid=self.described.guid,
-            unzipDirectory=str(self.folder),
-            modelIdentifier=self.described.coSimulation.modelIdentifier,
-            instanceName="tested",
-        )
-        if self.is_3:
-            self.fmu.instantiate(
-                loggingOn=True, earlyReturnAllowed=self.early, logMessage=self.heard
-            )
-        else:
-            self.fmu.instantiate(loggingOn=True)
-        self.ready()
-
-    def heard(self, _: object, status: int, _category: bytes, message: bytes) -> None:
-        """A line of the log."""
-        self.log.append((status, message.decode()))
-
-    def ready(self) -> None:
-        """To the first communication point."""
-        if self.is_3:
-            self.fmu.enterInitializationMode(startTime=0.0)
-        else:
-            self.fmu.setupExperiment(startTime=0.0)
-            self.fmu.enterInitializationMode()
-        self.fmu.exitInitializationMode()
-
-    def _call(self, verb: str, name: str) -> Callable[..., Any]:
-        kind = self.types[name]
-        if not self.is_3:
-            kind = {"Float64": "Real", "Int32": "Integer"}.get(kind, kind)
-        call: Callable[..., Any] = getattr(self.fmu, verb + kind)
-        return call
-
-    def set(self, name: str, value: float | bool) -> None:
-        """Set a variable."""
-        self._call("set", name)([self.references[name]], [value])
-
-    def get(self, *names: str) -> list[float]:
-        """Values of variables."""
-        return [self._call("get", name)([self.references[name]])[0] for name in names]
-
-    def step(self, start: float, length: float) -> Any:
-        """One communication step."""
-        return self.fmu.doStep(start, length)
-
-    def close(self) -> None:
-        """End the instance."""
-        self.fmu.freeInstance()
 
 
 @dataclass
@@ -119,12 +42,7 @@ class Launch:
 
 @pytest.fixture(scope="module")
 def units(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    folder = tmp_path_factory.mktemp("units")
-    made = {}
-    for version in ("2", "3"):
-        made[version] = folder / f"plate-{version}.fmu"
-        program("fmu", "scaled-plate-r10", "--fmi", version, "-o", made[version])
-    return made
+    return plate_units(tmp_path_factory.mktemp("units"))
 
 
 @pytest.fixture(scope="module")
@@ -280,12 +198,6 @@ def back_and_again(instance: Instance, now: float, length: float) -> None:
     put(again)
     free(again)
     free(state)
-
-
-def refused(status: int, call: Callable[[], object]) -> None:
-    with pytest.raises(FMICallException) as raised:
-        call()
-    assert raised.value.status == status
 
 
 def test_bad_calls_give_the_status_of_the_standard_and_a_line(
@@ -454,88 +366,6 @@ def test_launches_follow_one_another(unit: Instance, launches: list[Launch]) -> 
     assert unit.get("first_contact") == [4.02e-3]
 
 
-def asked(file: Path, variables: dict[str, str], start: dict[str, Any]) -> dict[str, Any]:
-    """A question of the program about a unit of its own."""
-    units = {"outer_velocity": "m/s", "inner_velocity": "m/s", "efficiency": "1"}
-    unit = {"file": str(file), "variables": variables, "start": start, "units": units}
-    scene = {"run": {"end_time": None}, "outer": {"speed": 0.55}}
-    return {
-        "schema_version": 1,
-        "sample_interval": 1e-6,
-        "scene": scene,
-        "unit": unit | {"curves": ["outer_velocity", "inner_velocity"], "interface": None},
-    }
-
-
-def test_a_unit_is_a_model_of_a_scene(units: dict[str, Path], launches: list[Launch]) -> None:
-    """As ``[[external]] fmu`` has it."""
-    variables = {"outer_velocity": "outer_velocity", "efficiency": "efficiency"}
-    start = {"launch": True, "outer.speed": "outer.speed"}
-    for version in ("2", "3"):
-        found = answer(asked(units[version], variables, start))
-        assert found["efficiency"] == pytest.approx(launches[0].result["efficiency"], rel=1e-9)
-        velocity = found["history"]["outer_velocity"]
-        assert velocity[0] == -0.55
-        assert velocity[-1] == pytest.approx(launches[0].result["outer_velocity_final"], rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("variables", "start", "part"),
-    [
-        ({"outer_velocity": "v"}, {}, "no variable 'v'; it has time, arm"),
-        ({"outer_velocity": "outer_displacement"}, {}, "is in m, but outer_velocity is in m/s"),
-        ({"outer_speed": "outer_velocity"}, {}, "no curve and no quantity 'outer_speed'"),
-        ({"efficiency": "efficiency"}, {"go": True}, "external.start.go: the unit has no variable"),
-        ({"efficiency": "efficiency"}, {"launch": "outer.mass"}, "no number at 'outer.mass'"),
-    ],
-)
-def test_what_a_unit_does_not_have_is_named(
-    units: dict[str, Path], variables: dict[str, str], start: dict[str, Any], part: str
-) -> None:
-    with pytest.raises(SceneError, match=re.escape(part)):
-        answer(asked(units["3"], variables, start))
-
-
-def test_what_is_no_unit_is_named(tmp_path: Path) -> None:
-    file = tmp_path / "plain.fmu"
-    file.write_text("no archive")
-    with pytest.raises(SceneError, match="is no Functional Mock-up Unit"):
-        answer(asked(file, {"efficiency": "efficiency"}, {}))
-    with pytest.raises(SceneError, match="is no Functional Mock-up Unit"):
-        answer(asked(tmp_path / "none.fmu", {"efficiency": "efficiency"}, {}))
-
-
-MILLI = (
-    b'<Unit name="m/s"><BaseUnit m="1" s="-1"/>',
-    b'<Unit name="m/s"><BaseUnit m="1" s="-1" factor="0.001"/>',
-)
-BY_TYPE = (
-    (
-        b"<LogCategories>",
-        b'<TypeDefinitions><Float64Type name="V" unit="m/s"/></TypeDefinitions><LogCategories>',
-    ),
-    (b'along z" unit="m/s"/>', b'along z" declaredType="V"/>'),
-)
-
-
-@pytest.mark.parametrize("changes", [(MILLI,), (MILLI, *BY_TYPE)])
-def test_units_of_other_prefixes_are_converted(
-    units: dict[str, Path], tmp_path: Path, changes: tuple[tuple[bytes, bytes], ...]
-) -> None:
-    """The same unit whose "m/s" is 1 mm/s, by its description; stated by variable or by type."""
-    file = tmp_path / "milli.fmu"
-    with zipfile.ZipFile(units["3"]) as source, zipfile.ZipFile(file, "w") as target:
-        for entry in source.infolist():
-            content = source.read(entry)
-            if entry.filename == "modelDescription.xml":
-                for old, new in changes:
-                    assert old in content
-                    content = content.replace(old, new)
-            target.writestr(entry, content)
-    found = answer(asked(file, {"outer_velocity": "outer_velocity"}, {"launch": True}))
-    assert found["history"]["outer_velocity"][0] == pytest.approx(-0.55e-3)
-
-
 @pytest.mark.evidence
 def test_the_system_example_gives_the_guides_table(tmp_path: Path) -> None:
     unit = tmp_path / "valve.fmu"
@@ -546,44 +376,3 @@ def test_the_system_example_gives_the_guides_table(tmp_path: Path) -> None:
     rows = re.findall(r"^\| (\d+) V \| ([\d.]+) ms \| (\d+) mm/s \| (yes|no) \|$", page, flags=re.M)
     printed = re.findall(r"^ *(\d+) V +([\d.]+) ms +(\d+) mm/s +(yes|no) ", run.stdout, flags=re.M)
     assert len(rows) == 5 and rows == printed
-
-
-def test_what_a_unit_prints_is_no_part_of_the_answer() -> None:
-    script = """
-import os
-from fem_reference.units import simulate
-from fem_reference.units.command import UNIT
-simulate.answer = lambda _: {"printed": os.write(1, b"hello from the unit")}
-UNIT.run(None)
-"""
-    command = [sys.executable, "-c", script]
-    run = subprocess.run(command, cwd=ROOT, input="{}", capture_output=True, text=True, check=True)
-    assert json.loads(run.stdout) == {"printed": 19} and "hello from the unit" in run.stderr
-
-
-def test_a_unit_takes_part_in_a_comparison(
-    units: dict[str, Path], launches: list[Launch], tmp_path: Path
-) -> None:
-    """The gate passes on it, and refuses to run it without leave."""
-    scene = (ROOT / "scenes/scaled-plate-r10.toml").read_text()
-    names = [
-        "outer_velocity",
-        "inner_velocity",
-        *(n for n in launches[0].result if "force_peak" in n),
-    ]
-    variables = "\n".join(f'{name} = "{name}"' for name in ["efficiency", *names])
-    own = f'[[external]]\nname = "unit"\nfmu = "{units["3"]}"\nstart = {{ launch = true }}\n'
-    gated = f"[external.variables]\n{variables}\n[tolerances.unit]\nefficiency.absolute = 0.01\n"
-    file = tmp_path / "scaled-plate-r10.toml"
-    file.write_text(f"{scene}\n{own}\n{gated}")
-    out = ["--out", tmp_path / "report", "--models", "external"]
-    environment = os.environ | {"IMPACTCHECK_PYTHON": sys.executable}
-    command = [str(part) for part in (PROGRAM, "gate", file, *out)]
-    for leave, status, part in [
-        ([], 2, "wants to run the unit"),
-        (["--allow-external"], 0, "pass"),
-    ]:
-        run = subprocess.run(
-            [*command, *leave], env=environment, capture_output=True, text=True, check=False
-        )
-        assert run.returncode == status and part in run.stdout + run.stderr, run.stdout + run.stderr

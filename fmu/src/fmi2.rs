@@ -4,10 +4,8 @@
 //! As [`crate::fmi3`].
 #![expect(clippy::missing_safety_doc, reason = "the standard states how these functions are called")]
 
-use crate::instance::{
-    Boolean2, Instance, InstanceLog, LogMessage2, Logger, Phase, Saved, Status, given, text,
-};
-use crate::shared::{life, refused};
+use crate::instance::{Instance, InstanceLog, LogMessage2, Logger, Phase, Saved, Status, given, text};
+use crate::shared::{life, refused, values};
 use crate::unit::Refusal;
 use crate::variables::Type;
 use std::ffi::{c_char, c_int, c_void};
@@ -15,8 +13,8 @@ use std::path::PathBuf;
 use std::ptr;
 use std::slice;
 
-const ANY: [Phase; 4] = [Phase::Instantiated, Phase::Initialization, Phase::Step, Phase::Terminated];
-const SETTABLE: [Phase; 3] = [Phase::Instantiated, Phase::Initialization, Phase::Step];
+/// `fmi2Boolean`.
+pub type Boolean2 = c_int;
 /// `fmi2CoSimulation`.
 const CO_SIMULATION: c_int = 1;
 /// `fmi2LastSuccessfulTime`.
@@ -71,7 +69,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     Instance::create(log, token, &path_of(&resources.to_string_lossy()), false)
 }
 
-/// The path behind a URI such as `file:///tmp/my%20unit/resources`, with or without host.
+/// The path behind a URI such as `file:///units/my%20unit/resources`, with or without host.
 fn path_of(uri: &str) -> PathBuf {
     let local = uri.get(..5).filter(|scheme| scheme.eq_ignore_ascii_case("file:")).map_or(uri, |_| &uri[5..]);
     let path = local.strip_prefix("//").map_or(local, |rest| &rest[rest.find('/').unwrap_or(0)..]);
@@ -109,7 +107,9 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
     categories: *const *const c_char,
 ) -> Status {
     unsafe {
-        Instance::call(instance, "fmi2SetDebugLogging", &ANY, |own| own.set_log(on != 0, categories, count))
+        Instance::call(instance, "fmi2SetDebugLogging", &Phase::ANY, |own| {
+            own.set_log(on != 0, categories, count)
+        })
     }
 }
 
@@ -156,41 +156,8 @@ pub unsafe extern "C" fn fmi2DoStep(
     }
 }
 
-macro_rules! values {
-    ($($kind:ident: $value:ty, $get:ident, $set:ident, $out:expr, $into:expr;)*) => {$(
-        /// Values of variables of a type.
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $get(
-            instance: *mut Instance,
-            references: *const u32,
-            count: usize,
-            values: *mut $value,
-        ) -> Status {
-            unsafe {
-                Instance::call(instance, stringify!($get), &ANY, |own| {
-                    own.get((references, values, count), Type::$kind, $out)
-                })
-            }
-        }
-
-        /// Sets variables of a type.
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $set(
-            instance: *mut Instance,
-            references: *const u32,
-            count: usize,
-            values: *const $value,
-        ) -> Status {
-            unsafe {
-                Instance::call(instance, stringify!($set), &SETTABLE, |own| {
-                    own.set((references, values, count), Type::$kind, $into)
-                })
-            }
-        }
-    )*};
-}
-
 values! {
+    []
     Real: f64, fmi2GetReal, fmi2SetReal, |value| value, |value| value;
     Integer: c_int, fmi2GetInteger, fmi2SetInteger, |value| value as c_int, f64::from;
     Boolean: Boolean2, fmi2GetBoolean, fmi2SetBoolean, |value| Boolean2::from(value != 0.0), |value| f64::from(u8::from(value != 0));
@@ -200,7 +167,7 @@ values! {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealStatus(instance: *mut Instance, what: c_int, value: *mut f64) -> Status {
     unsafe {
-        Instance::call(instance, "fmi2GetRealStatus", &ANY, |own| match what {
+        Instance::call(instance, "fmi2GetRealStatus", &Phase::ANY, |own| match what {
             LAST_SUCCESSFUL_TIME => {
                 *given(value.as_mut())? = own.unit.get(0, Type::Real)?;
                 Ok(())
@@ -230,11 +197,11 @@ mod tests {
     #[test]
     fn resources_are_found_by_their_uri() {
         for (uri, path) in [
-            ("file:///tmp/my%20unit/resources", "/tmp/my unit/resources"),
-            ("file://localhost/tmp/r", "/tmp/r"),
-            ("file:/tmp/r", "/tmp/r"),
-            ("FILE:///tmp/r", "/tmp/r"),
-            ("/tmp/100%", "/tmp/100%"),
+            ("file:///units/my%20unit/resources", "/units/my unit/resources"),
+            ("file://localhost/units/r", "/units/r"),
+            ("file:/units/r", "/units/r"),
+            ("FILE:///units/r", "/units/r"),
+            ("/units/100%", "/units/100%"),
             ("file:///C:/unit/resources", "C:/unit/resources"),
         ] {
             assert_eq!(path_of(uri), PathBuf::from(path), "{uri}");

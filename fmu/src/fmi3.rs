@@ -6,16 +6,13 @@
 #![expect(clippy::missing_safety_doc, reason = "the standard states how these functions are called")]
 
 use crate::instance::{Instance, InstanceLog, LogMessage3, Logger, Phase, Saved, Status, given, text};
-use crate::shared::{life, refused};
+use crate::shared::{life, refused, values};
 use crate::unit::Refusal;
 use crate::variables::Type;
 use std::ffi::{c_char, c_void};
 use std::path::Path;
 use std::ptr;
 use std::slice;
-
-const ANY: [Phase; 4] = [Phase::Instantiated, Phase::Initialization, Phase::Step, Phase::Terminated];
-const SETTABLE: [Phase; 3] = [Phase::Instantiated, Phase::Initialization, Phase::Step];
 
 /// `fmi3GetVersion`.
 #[unsafe(no_mangle)]
@@ -70,7 +67,9 @@ pub unsafe extern "C" fn fmi3SetDebugLogging(
     count: usize,
     categories: *const *const c_char,
 ) -> Status {
-    unsafe { Instance::call(instance, "fmi3SetDebugLogging", &ANY, |own| own.set_log(on, categories, count)) }
+    unsafe {
+        Instance::call(instance, "fmi3SetDebugLogging", &Phase::ANY, |own| own.set_log(on, categories, count))
+    }
 }
 
 /// `fmi3EnterInitializationMode`.
@@ -137,45 +136,8 @@ fn of_same_length(references: usize, values: usize) -> Result<(), Refusal> {
     }
 }
 
-macro_rules! values {
-    ($($kind:ident: $value:ty, $get:ident, $set:ident, $out:expr, $into:expr;)*) => {$(
-        /// Values of variables of a type.
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $get(
-            instance: *mut Instance,
-            references: *const u32,
-            count: usize,
-            values: *mut $value,
-            value_count: usize,
-        ) -> Status {
-            unsafe {
-                Instance::call(instance, stringify!($get), &ANY, |own| {
-                    of_same_length(count, value_count)?;
-                    own.get((references, values, count), Type::$kind, $out)
-                })
-            }
-        }
-
-        /// Sets variables of a type.
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $set(
-            instance: *mut Instance,
-            references: *const u32,
-            count: usize,
-            values: *const $value,
-            value_count: usize,
-        ) -> Status {
-            unsafe {
-                Instance::call(instance, stringify!($set), &SETTABLE, |own| {
-                    of_same_length(count, value_count)?;
-                    own.set((references, values, count), Type::$kind, $into)
-                })
-            }
-        }
-    )*};
-}
-
 values! {
+    [value_count]
     Real: f64, fmi3GetFloat64, fmi3SetFloat64, |value| value, |value| value;
     Integer: i32, fmi3GetInt32, fmi3SetInt32, |value| value as i32, f64::from;
     Boolean: bool, fmi3GetBoolean, fmi3SetBoolean, |value| value != 0.0, |value| f64::from(u8::from(value));
@@ -189,7 +151,7 @@ pub unsafe extern "C" fn fmi3GetNumberOfVariableDependencies(
     count: *mut usize,
 ) -> Status {
     unsafe {
-        Instance::call(instance, "fmi3GetNumberOfVariableDependencies", &ANY, |_| {
+        Instance::call(instance, "fmi3GetNumberOfVariableDependencies", &Phase::ANY, |_| {
             *given(count.as_mut())? = 0;
             Ok(())
         })
@@ -207,7 +169,9 @@ pub unsafe extern "C" fn fmi3GetVariableDependencies(
     _kinds: *const c_void,
     count: usize,
 ) -> Status {
-    unsafe { Instance::call(instance, "fmi3GetVariableDependencies", &ANY, |_| of_same_length(0, count)) }
+    unsafe {
+        Instance::call(instance, "fmi3GetVariableDependencies", &Phase::ANY, |_| of_same_length(0, count))
+    }
 }
 
 /// `fmi3InstantiateModelExchange`: there is none.

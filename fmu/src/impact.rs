@@ -8,7 +8,7 @@ use impactcheck_physics::flight::Seat;
 use impactcheck_physics::kinds::Series;
 use impactcheck_physics::result::{Outcome, Summary};
 use impactcheck_physics::scene::{Model, Scene};
-use impactcheck_prediction::{Prediction, Similar, predict};
+use impactcheck_prediction::{Prediction, predict_of_any};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
@@ -40,11 +40,6 @@ impl LaunchedImpact {
     /// Its results.
     pub fn summary(&self) -> &Summary {
         &self.outcome.summary
-    }
-
-    /// Time in s from the launch to the first contact: a bender swings until it strikes.
-    pub fn delay(&self) -> f64 {
-        self.summary().bender.map_or(0.0, |bender| bender.drive.strike_delay)
     }
 
     /// Time in s from the first contact to the last release, or to the end of a run that was cut before.
@@ -139,17 +134,11 @@ impl LaunchedImpact {
     /// What a reference would find: model C runs for it, as it is by default, unless this is its result.
     fn prediction(&self, source: &UnitSource, series: &dyn Series) -> &Prediction {
         self.prediction.get_or_init(|| {
-            // before model C costs anything
-            Similar::of(&self.scene)?;
             let is_default = source.setup.modes.or(self.scene.reduced.modes).is_none();
-            if source.model == Model::C && is_default {
-                return predict(&self.scene, self.summary());
-            }
-            let mut scene = self.scene.clone();
-            scene.reduced.modes = None;
-            let model = series.model(scene.clone(), Model::C, None);
-            let summary = model.and_then(|model| model.run(source.setup.tolerance));
-            predict(&scene, &summary.map_err(|error| format!("model C does not run: {error}"))?)
+            let is_continuum = source.model == Model::C && is_default;
+            predict_of_any(&self.scene, (self.summary(), is_continuum), |scene| {
+                series.model(scene.clone(), Model::C, None)?.run(source.setup.tolerance)
+            })
         })
     }
 }

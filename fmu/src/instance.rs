@@ -4,7 +4,7 @@ use crate::source::UnitSource;
 use crate::unit::{ImpactUnit, Refusal, UnitState};
 use crate::variables::Type;
 use serde::{Deserialize, Serialize};
-use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::ffi::{CStr, CString, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::ptr;
@@ -13,9 +13,9 @@ use std::ptr;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub enum Status {
-    /// As asked.
+    /// Done.
     Ok,
-    /// As asked, with something to know.
+    /// Done, with something to know.
     Warning,
     /// Not carried out; the instance is as before.
     Discard,
@@ -44,6 +44,13 @@ pub enum Phase {
     Terminated,
     /// After a fault of the unit itself: it can only be freed.
     Failed,
+}
+
+impl Phase {
+    /// All but after a fault.
+    pub const ANY: [Self; 4] = [Self::Instantiated, Self::Initialization, Self::Step, Self::Terminated];
+    /// Those in which variables can be set.
+    pub const SETTABLE: [Self; 3] = [Self::Instantiated, Self::Initialization, Self::Step];
 }
 
 /// Function of the environment that takes log messages.
@@ -262,19 +269,14 @@ impl Instance {
     /// `place` points to a pointer.
     pub unsafe fn save(&mut self, place: *mut *mut Saved) -> Result<(), Refusal> {
         // SAFETY: by the caller
-        let place =
-            unsafe { place.as_mut() }.ok_or_else(|| Refusal::Error("no place for the state".into()))?;
-        let state = self.saved();
+        let place = given(unsafe { place.as_mut() })?;
+        let state = Saved { phase: self.phase, state: self.unit.state().clone() };
         if place.is_null() {
             *place = self.hand_out(state);
         } else {
             *self.known(*place)? = state;
         }
         Ok(())
-    }
-
-    fn saved(&self) -> Saved {
-        Saved { phase: self.phase, state: self.unit.state().clone() }
     }
 
     /// Puts a state into the hands of the environment, by its address.
@@ -290,7 +292,7 @@ impl Instance {
     /// # Errors
     /// [`Refusal::Error`] of any other address.
     pub fn known(&mut self, state: *mut Saved) -> Result<&mut Saved, Refusal> {
-        let known = self.states.iter_mut().find(|known| std::ptr::eq::<Saved>(&***known, state));
+        let known = self.states.iter_mut().find(|known| ptr::eq::<Saved>(&***known, state));
         known
             .map(|known| &mut **known)
             .ok_or_else(|| Refusal::Error("the state is none that this instance has given".into()))
@@ -318,7 +320,7 @@ impl Instance {
         // SAFETY: by the caller
         let Some(place) = (unsafe { place.as_mut() }).filter(|place| !place.is_null()) else { return Ok(()) };
         self.known(*place)?;
-        self.states.retain(|known| !std::ptr::eq::<Saved>(&**known, *place));
+        self.states.retain(|known| !ptr::eq::<Saved>(&**known, *place));
         *place = ptr::null_mut();
         Ok(())
     }
@@ -382,6 +384,3 @@ pub unsafe fn text<'a>(pointer: *const c_char) -> &'a CStr {
     // SAFETY: by the caller
     if pointer.is_null() { c"" } else { unsafe { CStr::from_ptr(pointer) } }
 }
-
-/// A truth as FMI 2.0 writes it.
-pub type Boolean2 = c_int;

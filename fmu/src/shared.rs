@@ -48,7 +48,7 @@ macro_rules! life {
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $reset(instance: *mut Instance) -> Status {
             unsafe {
-                Instance::call(instance, stringify!($reset), &ANY, |own| {
+                Instance::call(instance, stringify!($reset), &Phase::ANY, |own| {
                     own.unit.reset();
                     own.phase = Phase::Instantiated;
                     Ok(())
@@ -59,19 +59,19 @@ macro_rules! life {
         /// Hands out a copy of the state.
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $get(instance: *mut Instance, state: *mut *mut Saved) -> Status {
-            unsafe { Instance::call(instance, stringify!($get), &ANY, |own| own.save(state)) }
+            unsafe { Instance::call(instance, stringify!($get), &Phase::ANY, |own| own.save(state)) }
         }
 
         /// Back into a state.
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $set(instance: *mut Instance, state: *mut Saved) -> Status {
-            unsafe { Instance::call(instance, stringify!($set), &ANY, |own| own.restore(state)) }
+            unsafe { Instance::call(instance, stringify!($set), &Phase::ANY, |own| own.restore(state)) }
         }
 
         /// Frees a state.
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $free_state(instance: *mut Instance, state: *mut *mut Saved) -> Status {
-            unsafe { Instance::call(instance, stringify!($free_state), &ANY, |own| own.forget(state)) }
+            unsafe { Instance::call(instance, stringify!($free_state), &Phase::ANY, |own| own.forget(state)) }
         }
 
         /// Bytes that a state takes.
@@ -82,7 +82,7 @@ macro_rules! life {
             size: *mut usize,
         ) -> Status {
             unsafe {
-                Instance::call(instance, stringify!($size), &ANY, |own| {
+                Instance::call(instance, stringify!($size), &Phase::ANY, |own| {
                     let length = own.serialized(state)?.len();
                     *given(size.as_mut())? = length;
                     Ok(())
@@ -99,7 +99,7 @@ macro_rules! life {
             size: usize,
         ) -> Status {
             unsafe {
-                Instance::call(instance, stringify!($serialize), &ANY, |own| {
+                Instance::call(instance, stringify!($serialize), &Phase::ANY, |own| {
                     let found = own.serialized(state)?;
                     if found.len() > size {
                         let needed = found.len();
@@ -122,7 +122,7 @@ macro_rules! life {
             state: *mut *mut Saved,
         ) -> Status {
             unsafe {
-                Instance::call(instance, stringify!($deserialize), &ANY, |own| {
+                Instance::call(instance, stringify!($deserialize), &Phase::ANY, |own| {
                     let place = given(state.as_mut())?;
                     let bytes = if bytes.is_null() { &[][..] } else { slice::from_raw_parts(bytes, size) };
                     *place = own.deserialized(bytes)?;
@@ -134,6 +134,54 @@ macro_rules! life {
 }
 pub(crate) use life;
 
+/// Functions that get and set the values of each type of variable. The name in brackets is that of the number of values, an argument of
+/// FMI 3.0 alone.
+macro_rules! values {
+    ($counted:tt $($kind:ident: $value:ty, $get:ident, $set:ident, $out:expr, $into:expr;)*) => {$(
+        $crate::shared::values_of_type!{ $counted $kind: $value, $get, $set, $out, $into }
+    )*};
+}
+pub(crate) use values;
+
+macro_rules! values_of_type {
+    ([$($counted:ident)?] $kind:ident: $value:ty, $get:ident, $set:ident, $out:expr, $into:expr) => {
+        /// Values of variables of a type.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $get(
+            instance: *mut Instance,
+            references: *const u32,
+            count: usize,
+            values: *mut $value,
+            $($counted: usize,)?
+        ) -> Status {
+            unsafe {
+                Instance::call(instance, stringify!($get), &Phase::ANY, |own| {
+                    $(of_same_length(count, $counted)?;)?
+                    own.get((references, values, count), Type::$kind, $out)
+                })
+            }
+        }
+
+        /// Sets variables of a type.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $set(
+            instance: *mut Instance,
+            references: *const u32,
+            count: usize,
+            values: *const $value,
+            $($counted: usize,)?
+        ) -> Status {
+            unsafe {
+                Instance::call(instance, stringify!($set), &Phase::SETTABLE, |own| {
+                    $(of_same_length(count, $counted)?;)?
+                    own.set((references, values, count), Type::$kind, $into)
+                })
+            }
+        }
+    };
+}
+pub(crate) use values_of_type;
+
 /// Functions for what the unit does not have: they are there, and refuse. Arguments besides the instance are not read.
 macro_rules! refused {
     ($($name:ident,)*) => {$(
@@ -141,7 +189,7 @@ macro_rules! refused {
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $name(instance: *mut Instance) -> Status {
             unsafe {
-                Instance::call(instance, stringify!($name), &ANY, |_| {
+                Instance::call(instance, stringify!($name), &Phase::ANY, |_| {
                     Err(Refusal::Error("the unit does not have this".into()))
                 })
             }

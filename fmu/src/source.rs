@@ -46,7 +46,7 @@ impl UnitSource {
     /// What `resources` holds, a unit's folder. From now on bodies find their meshes there.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::Scene`] of files that are missing or damaged.
+    /// [`Error::Io`], [`Error::Scene`] and [`Error::Internal`] of files that are missing or damaged.
     pub fn read(resources: &Path) -> Result<Self> {
         let read = |name: &str| {
             let path = resources.join(name);
@@ -58,14 +58,7 @@ impl UnitSource {
         let mesh = resources.join(SEAT_MESH);
         let mesh = mesh.is_file().then(|| FollowedMesh::open(&mesh)).transpose()?;
         let scene = resources.join(SCENE);
-        Self::new(Template::parse(&scene.display().to_string(), &read(SCENE)?)?, setup, mesh)
-    }
-
-    /// The model that `setup` names, of the scene of `template`, a seal seat with its `mesh`.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] of a model that there is not.
-    pub fn new(template: Template, setup: UnitSetup, mesh: Option<FollowedMesh>) -> Result<Self> {
+        let template = Template::parse(&scene.display().to_string(), &read(SCENE)?)?;
         let model = setup.model.parse().map_err(Error::Internal)?;
         Ok(Self { template, setup, model, mesh })
     }

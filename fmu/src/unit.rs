@@ -264,7 +264,7 @@ impl ImpactUnit {
         if launches && next.armed {
             let impact = self.impact_of(&next.values)?;
             remarks.extend(impact.remarks());
-            let contact = time + impact.delay();
+            let contact = time + impact.summary().strike_delay();
             let (events, values) = ([contact, contact + impact.duration()], next.values.clone());
             next.launched = Some(Launched { events, values, impact: Some(Arc::new(impact)) });
             next.armed = false;

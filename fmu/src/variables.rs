@@ -47,7 +47,7 @@ pub enum Output {
     Release,
     /// A quantity of the result.
     Quantity(&'static Quantity),
-    /// Whether the result determines every quantity and has no warning.
+    /// Whether the result has no warning and the run was not cut.
     Valid,
     /// Number of warnings.
     Warnings,
@@ -103,18 +103,7 @@ impl UnitVariable {
 impl Output {
     fn description(self) -> String {
         match self {
-            Output::Curve(name) => {
-                let (body, what) = name.split_once('_').unwrap_or(("body", name));
-                let since = if what.starts_with("displacement") { " since the first contact" } else { "" };
-                let what = what.replace('_', " along ");
-                let along = if what.contains("along") { "" } else { " along z" };
-                let mut text = format!("{what} of the {body}{along}{since}");
-                text[..1].make_ascii_uppercase();
-                if !matches!(body, "sphere" | "actuator") {
-                    text = text.replace(body, &format!("{body} body"));
-                }
-                text
-            }
+            Output::Curve(name) => format!("Curve {name} of the impact; 0 before the first contact"),
             Output::Impulse(force) => format!("Integral of {force} since the first contact"),
             Output::Over => "Whether the impact is over, or its run; the results are 0 before".into(),
             Output::Contact => "Time of the first contact".into(),

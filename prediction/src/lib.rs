@@ -79,6 +79,27 @@ pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
     Ok(continuum.quantities.iter().filter_map(interval).collect())
 }
 
+/// What a reference of `scene` would find, of which a model has the `summary`. Model C runs by `run` for it as it is by default, unless the
+/// summary `is_continuum`: its own.
+///
+/// # Errors
+/// As [`predict`], and where model C does not run.
+pub fn predict_of_any(
+    scene: &Scene,
+    (summary, is_continuum): (&Summary, bool),
+    run: impl FnOnce(&Scene) -> impactcheck_physics::Result<Summary>,
+) -> Prediction {
+    // before model C costs anything
+    Similar::of(scene)?;
+    if is_continuum {
+        return predict(scene, summary);
+    }
+    let mut scene = scene.clone();
+    scene.reduced.modes = None;
+    let continuum = run(&scene).map_err(|error| format!("model C does not run: {error}"))?;
+    predict(&scene, &continuum)
+}
+
 /// Half widths of the intervals of [`predict`], relative to [`scale`], by quantity.
 ///
 /// # Errors

@@ -3,7 +3,7 @@
 use super::requested_model::{ModelRequest, RequestedModel};
 use super::{Context, kinds};
 use crate::kinds::SharedBodies;
-use crate::prediction::{self, Interval, Prediction, Similar, Similarity};
+use crate::prediction::{self, Interval, Prediction, Similarity};
 use crate::result::Summary;
 use crate::scene::{Model, Scene};
 use serde::Serialize;
@@ -16,19 +16,13 @@ pub(super) fn predicted(
     request: &ModelRequest,
     summary: &Summary,
 ) -> Prediction {
-    // before model C costs anything
-    Similar::of(scene)?;
     let default = ModelRequest { model: Some(RequestedModel::Named(Model::C)), ..ModelRequest::default() };
     let is_default = request.modes.or(scene.reduced.modes).is_none() && request.tolerance.is_none();
-    if is_default && summary.choice.is_none() && summary.model == Some(Model::C.to_string()) {
-        return prediction::predict(scene, summary);
-    }
-    let mut scene = scene.clone();
-    scene.reduced.modes = None;
-    let outcome = kinds::of(&scene)
-        .reduced(context, &scene, &default, &SharedBodies::default(), false)
-        .map_err(|error| format!("model C does not run: {error}"))?;
-    prediction::predict(&scene, &outcome.summary)
+    let is_continuum = is_default && summary.choice.is_none() && summary.model == Some(Model::C.to_string());
+    prediction::predict_of_any(scene, (summary, is_continuum), |scene| {
+        let bodies = SharedBodies::default();
+        Ok(kinds::of(scene).reduced(context, scene, &default, &bodies, false)?.summary)
+    })
 }
 
 /// A summary, and what a reference would find.

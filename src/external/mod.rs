@@ -26,8 +26,8 @@ const REPORTED_LINES: usize = 3;
 /// Gives the command that runs a unit, which is described on its standard input.
 pub type UnitRunner<'a> = &'a dyn Fn() -> Result<Command, Error>;
 
-/// What `program` makes of `scene`, run in `folder`, a unit by what `unit_runner` gives; it is asked for samples at the distance of
-/// `sample_interval` s.
+/// What `program` makes of `scene`, run in `folder`, a unit by what `unit_runner` gives; samples are requested at the
+/// distance of `sample_interval` s.
 pub fn run(
     scene: &Scene,
     program: &External,

@@ -91,14 +91,13 @@ pub fn packed(parts: &UnitParts) -> Result<Packed> {
     let names: Vec<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
     setup.token = sha256_hex(format!("{tool}\n{setup:?}\n{names:?}\n{text}").as_bytes());
     let end = parts.outcome.history.time.last().copied().unwrap_or(0.0);
-    let delay = summary.bender.map_or(0.0, |bender| bender.drive.strike_delay);
     let identity = Identity {
         name: &scene.name,
         identifier: &identifier,
         description: &scene.description,
         token: &setup.token,
         tool: &tool,
-        stop: rounded_up(EXPERIMENT * (delay + end)),
+        stop: rounded_up(EXPERIMENT * (summary.strike_delay() + end)),
     };
     let icon = match parts.version {
         Version::Two => "model.png",
@@ -156,7 +155,7 @@ pub fn launchable(template: &Template) -> Result<Template> {
     Template::parse(name, &text(&table)?)
 }
 
-/// The file of the scene of `template` as it lies in the unit, its body's file beside it.
+/// The file of the scene of `template` as it lies in the unit, with its body's file in the same folder.
 fn scene_file(template: &Template) -> Result<String> {
     let scene = template.scene();
     let mut table = table(template.text())?;

@@ -231,6 +231,11 @@ impl Summary {
         ends.map(|end| end.value).try_fold(0.0_f64, |last, end| Some(last.max(end?)))
     }
 
+    /// Time in s from the launch to the first contact: a bender swings until it strikes.
+    pub fn strike_delay(&self) -> f64 {
+        self.bender.map_or(0.0, |bender| bender.drive.strike_delay)
+    }
+
     /// Keeps the limits, and warns of those exceeded.
     pub(crate) fn set_limits(&mut self, limits: Vec<Limit>) {
         self.warnings.extend(limits.iter().filter_map(Limit::warning));

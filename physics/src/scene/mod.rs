@@ -7,6 +7,7 @@
 mod advice;
 mod alternatives;
 mod check;
+mod check_numbers;
 pub(crate) mod collision;
 mod external;
 mod fault;

@@ -11,7 +11,7 @@ use maud::{Markup, html};
 pub fn unit_page(scene: &Scene, summary: &Summary, version: &str, variables: &[UnitVariable]) -> String {
     let model = model_name(summary.model.as_deref().unwrap_or("?"), summary.modes);
     let machine = format!("{} {}", std::env::consts::OS, std::env::consts::ARCH);
-    let delay = summary.bender.map(|bender| bender.drive.strike_delay);
+    let delay = summary.strike_delay();
     let body = html! {
         h1 { (scene.name) }
         p.soft { (scene.description) }
@@ -25,7 +25,7 @@ pub fn unit_page(scene: &Scene, summary: &Summary, version: &str, variables: &[U
         }
         p { "The unit computes the whole impact at its launch, with an integrator of its own. So results do not depend on the communication "
             "steps, and an impact may begin and end within one step." }
-        @if let Some(delay) = delay {
+        @if delay > 0.0 {
             p { "At the launch the bender is released. It strikes " (with_unit(delay, prefixed("s", delay), 4)) " later." }
         }
         h2 { "What a simulation must not do" }

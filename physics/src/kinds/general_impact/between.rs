@@ -159,7 +159,7 @@ pub(in crate::kinds) fn off_centre_plate(
     Ok((system, between.coarse, between.warnings))
 }
 
-/// The meshes of a `plate` that `outer` strikes beside its centre.
+/// The meshes of a `plate` that `outer` strikes off its centre.
 pub(in crate::kinds) fn off_centre_meshes(plate: &Plate, outer: &Outer) -> Vec<MeshRequest> {
     elastic::mesh_requests(&Body::of_plate(plate, outer.offset))
 }
