@@ -35,7 +35,8 @@ def expected() -> dict[str, Any]:
 
 def question(file: Path, variables: dict[str, str], start: dict[str, Any]) -> dict[str, Any]:
     """A question of the program about a unit of its own."""
-    units = {"outer_velocity": "m/s", "inner_velocity": "m/s", "efficiency": "1"}
+    speed = ("m/s", {"m": 1, "s": -1})
+    units = {"outer_velocity": speed, "inner_velocity": speed, "efficiency": ("1", {})}
     unit = {"file": str(file), "variables": variables, "start": start, "units": units}
     scene = {"run": {"end_time": None}, "outer": {"speed": 0.55}}
     return {
@@ -93,7 +94,7 @@ BY_TYPE = (
         b"<LogCategories>",
         b'<TypeDefinitions><Float64Type name="V" unit="m/s"/></TypeDefinitions><LogCategories>',
     ),
-    (b'first contact" unit="m/s"/>', b'first contact" declaredType="V"/>'),
+    (b'continuous" unit="m/s"/>', b'continuous" declaredType="V"/>'),
 )
 
 

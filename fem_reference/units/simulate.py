@@ -22,17 +22,6 @@ MOST_SAMPLES = 100_000
 """Of a history; a longer simulation has wider intervals."""
 SHOWN = 20
 """Most names of variables that a message lists."""
-EXPONENTS = {
-    "1": {},
-    "m": {"m": 1},
-    "m/s": {"m": 1, "s": -1},
-    "s": {"s": 1},
-    "Hz": {"s": -1},
-    "N": {"kg": 1, "m": 1, "s": -2},
-    "N*s": {"kg": 1, "m": 1, "s": -1},
-    "rad": {"rad": 1},
-}
-"""SI units of curves and quantities."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +40,9 @@ class Variable:
 def answer(question: dict[str, Any]) -> dict[str, Any]:
     """The answer to a question of the program.
 
-    ``question["unit"]`` has the ``file``, the ``variables`` by curves and quantities, their SI
-    ``units`` by name, which names are ``curves``, the ``start`` values, and the ``interface``.
+    ``question["unit"]`` has the ``file``, the ``variables`` by curves and quantities, by name their
+    SI ``units`` with the exponents of base units, which names are ``curves``, the ``start``
+    values, and the ``interface``.
     """
     unit, scene = question["unit"], question["scene"]
     file = Path(unit["file"])
@@ -142,7 +132,9 @@ def _known(described: Any, name: str, what: str) -> Any:
     raise SceneError(f"{what}: the unit has no variable {name!r}; it has {listed}")
 
 
-def _variable(described: Any, own: str, name: str, unit: str | None) -> Variable:
+def _variable(
+    described: Any, own: str, name: str, unit: tuple[str, dict[str, int]] | None
+) -> Variable:
     """The unit's variable ``own`` as the curve or quantity ``name`` in the SI ``unit``."""
     key = f"external.variables.{name}"
     variable = _known(described, own, key)
@@ -154,9 +146,10 @@ def _variable(described: Any, own: str, name: str, unit: str | None) -> Variable
     base = next((u.baseUnit for u in described.unitDefinitions if u.name == named), None)
     if base is None:
         raise SceneError(f"{key}: the unit does not define {named!r}, in which {own!r} is")
+    symbol, needed = unit
     exponents = {k: getattr(base, k) for k in ("kg", "m", "s", "A", "K", "mol", "cd", "rad")}
-    if {k: e for k, e in exponents.items() if e} != EXPONENTS.get(unit, {}):
-        raise SceneError(f"{key}: {own!r} is in {named}, but {name} is in {unit}")
+    if {k: e for k, e in exponents.items() if e} != needed:
+        raise SceneError(f"{key}: {own!r} is in {named}, but {name} is in {symbol}")
     return Variable(own, float(base.factor or 1.0), float(base.offset or 0.0))
 
 

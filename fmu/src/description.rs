@@ -2,6 +2,8 @@
 
 use crate::instance::CATEGORIES;
 use crate::variables::{Output, Role, Type, UnitVariable};
+use impactcheck_physics::scene::{Dimension, dimension_of};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// A version of the standard.
@@ -11,6 +13,16 @@ pub enum Version {
     Two,
     /// FMI 3.0.
     Three,
+}
+
+impl Version {
+    /// As the standard numbers it.
+    pub fn number(self) -> &'static str {
+        match self {
+            Version::Two => "2.0",
+            Version::Three => "3.0",
+        }
+    }
 }
 
 /// What a unit is called.
@@ -30,48 +42,18 @@ pub struct Identity<'a> {
     pub stop: f64,
 }
 
-/// SI units of variables: name and exponents of kg, m, s, A, rad.
-const UNITS: [(&str, [i32; 5]); 26] = [
-    ("m", [0, 1, 0, 0, 0]),
-    ("m^2", [0, 2, 0, 0, 0]),
-    ("kg", [1, 0, 0, 0, 0]),
-    ("s", [0, 0, 1, 0, 0]),
-    ("m/s", [0, 1, -1, 0, 0]),
-    ("m/s^2", [0, 1, -2, 0, 0]),
-    ("Pa", [1, -1, -2, 0, 0]),
-    ("Pa*s", [1, -1, -1, 0, 0]),
-    ("kg/m^3", [1, -3, 0, 0, 0]),
-    ("kg/m", [1, -1, 0, 0, 0]),
-    ("kg*m^2", [1, 2, 0, 0, 0]),
-    ("N", [1, 1, -2, 0, 0]),
-    ("N*s", [1, 1, -1, 0, 0]),
-    ("N*m", [1, 2, -2, 0, 0]),
-    ("N*m^2", [1, 3, -2, 0, 0]),
-    ("N/m", [1, 0, -2, 0, 0]),
-    ("Hz", [0, 0, -1, 0, 0]),
-    ("rad", [0, 0, 0, 0, 1]),
-    ("rad/s", [0, 0, -1, 0, 1]),
-    ("V", [1, 2, -3, -1, 0]),
-    ("F", [-1, -2, 4, 2, 0]),
-    ("Ohm", [1, 2, -3, -2, 0]),
-    ("H", [1, 2, -2, -2, 0]),
-    ("J", [1, 2, -2, 0, 0]),
-    ("W", [1, 2, -3, 0, 0]),
-    ("A", [0, 0, 0, 1, 0]),
-];
-const BASES: [&str; 5] = ["kg", "m", "s", "A", "rad"];
 /// Steps of the default experiment.
 const STEPS: f64 = 1000.0;
 
 /// The document of a unit with these `variables`.
 pub fn model_description(version: Version, of: &Identity, variables: &[UnitVariable]) -> String {
     let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-    let [standard, token, state] = match version {
-        Version::Two => ["2.0", "guid", "FMUstate"],
-        Version::Three => ["3.0", "instantiationToken", "FMUState"],
+    let [token, state] = match version {
+        Version::Two => ["guid", "FMUstate"],
+        Version::Three => ["instantiationToken", "FMUState"],
     };
     let head = attributes(&[
-        ("fmiVersion", standard.into()),
+        ("fmiVersion", version.number().into()),
         ("modelName", of.name.into()),
         (token, of.token.into()),
         ("description", of.description.into()),
@@ -104,10 +86,7 @@ pub fn model_description(version: Version, of: &Identity, variables: &[UnitVaria
     ]);
     let _ = writeln!(xml, "  <DefaultExperiment{experiment}/>\n  <ModelVariables>");
     for (reference, variable) in variables.iter().enumerate() {
-        match version {
-            Version::Two => variable_of_2(&mut xml, reference, variable),
-            Version::Three => variable_of_3(&mut xml, reference, variable),
-        }
+        variable_element(&mut xml, version, reference, variable);
     }
     xml.push_str("  </ModelVariables>\n  <ModelStructure>\n");
     structure(&mut xml, version, variables);
@@ -117,11 +96,12 @@ pub fn model_description(version: Version, of: &Identity, variables: &[UnitVaria
 
 /// Definitions of the units that occur.
 fn units(xml: &mut String, variables: &[UnitVariable]) {
+    let names: BTreeSet<&str> = variables.iter().map(|variable| variable.unit).collect();
     xml.push_str("  <UnitDefinitions>\n");
-    for (name, exponents) in UNITS.iter().filter(|(name, _)| variables.iter().any(|v| v.unit == *name)) {
-        let bases: Vec<(&str, String)> =
-            BASES.iter().zip(exponents).filter(|(_, e)| **e != 0).map(|(b, e)| (*b, e.to_string())).collect();
-        let name = attributes(&[("name", (*name).into())]);
+    for name in names.into_iter().filter(|name| *name != "1") {
+        let bases = dimension_of(name).into_iter().flat_map(Dimension::bases);
+        let bases: Vec<_> = bases.map(|(base, exponent)| (base, exponent.to_string())).collect();
+        let name = attributes(&[("name", name.into())]);
         let _ = writeln!(xml, "    <Unit{name}><BaseUnit{}/></Unit>", attributes(&bases));
     }
     xml.push_str("  </UnitDefinitions>\n");
@@ -172,29 +152,13 @@ fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-fn variable_of_3(xml: &mut String, reference: usize, variable: &UnitVariable) {
-    let element = match variable.kind {
-        Type::Real => "Float64",
-        Type::Integer => "Int32",
-        Type::Boolean => "Boolean",
-    };
-    let [causality, variability] = nature(variable);
-    let mut of = vec![
-        ("name", variable.name.clone()),
-        ("valueReference", reference.to_string()),
-        ("causality", causality.into()),
-        ("variability", variability.into()),
-        ("description", variable.description.clone()),
-    ];
-    of.extend(values(variable));
-    let _ = writeln!(xml, "    <{element}{}/>", attributes(&of));
-}
-
-fn variable_of_2(xml: &mut String, reference: usize, variable: &UnitVariable) {
-    let element = match variable.kind {
-        Type::Real => "Real",
-        Type::Integer => "Integer",
-        Type::Boolean => "Boolean",
+fn variable_element(xml: &mut String, version: Version, reference: usize, variable: &UnitVariable) {
+    let element = match (version, variable.kind) {
+        (Version::Two, Type::Real) => "Real",
+        (Version::Two, Type::Integer) => "Integer",
+        (Version::Three, Type::Real) => "Float64",
+        (Version::Three, Type::Integer) => "Int32",
+        (_, Type::Boolean) => "Boolean",
     };
     let [causality, variability] = nature(variable);
     let of = attributes(&[
@@ -205,7 +169,10 @@ fn variable_of_2(xml: &mut String, reference: usize, variable: &UnitVariable) {
         ("variability", variability.into()),
     ]);
     let values = attributes(&values(variable));
-    let _ = writeln!(xml, "    <ScalarVariable{of}><{element}{values}/></ScalarVariable>");
+    let _ = match version {
+        Version::Two => writeln!(xml, "    <ScalarVariable{of}><{element}{values}/></ScalarVariable>"),
+        Version::Three => writeln!(xml, "    <{element}{of}{values}/>"),
+    };
 }
 
 /// Outputs depend on nothing at a communication point.
@@ -267,8 +234,8 @@ mod tests {
                 }
                 let template = Template::read(&file).expect("a scene");
                 for variable in variables(&template) {
-                    let known = variable.unit == "1" || UNITS.iter().any(|(name, _)| *name == variable.unit);
-                    assert!(known, "{} of {}", variable.unit, variable.name);
+                    let unit = variable.unit;
+                    assert!(dimension_of(unit).is_some(), "{unit} of {}", variable.name);
                 }
                 scenes += 1;
             }

@@ -4,7 +4,7 @@ use super::requested_model::{ModelRequest, RequestedModel};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{Error, ExitStatus, Result};
 use crate::file::write_file;
-use crate::fmu::{UnitParts, launchable, number, packed};
+use crate::fmu::{UnitParts, launchable, packed};
 use crate::kinds::SharedBodies;
 use crate::scene::{Template, resolve};
 use clap::Args;
@@ -76,7 +76,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     write_file(&out, &unit.bytes)?;
     let (bytes, variables) = (unit.bytes.len(), unit.variables.len());
     let model = summary.model.as_deref().unwrap_or_default();
-    let fmi = number(arguments.fmi.0);
+    let fmi = arguments.fmi.0.number();
     let document = json!({
         "file": out, "fmi": fmi, "model": model, "modes": summary.modes, "variables": variables, "bytes": bytes,
     });

@@ -11,7 +11,7 @@ pub use answer::{assembled, summary};
 use crate::error::Error;
 use crate::kinds;
 use crate::result::{History, Outcome, SCHEMA_VERSION, Source, Summary, Table};
-use crate::scene::{External, ExternalProgram, Scene};
+use crate::scene::{Dimension, External, ExternalProgram, Scene, dimension_of};
 use process::{MOST_BYTES, Said};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -80,10 +80,13 @@ fn run_program(
             }
             let file = std::path::absolute(&file).unwrap_or(file);
             let kind = kinds::of(scene);
-            let curves: BTreeMap<_, _> = kind.curves().iter().map(|curve| (curve.name, curve.unit)).collect();
-            let mut units = curves.clone();
-            units.extend(kind.quantities().iter().map(|quantity| (quantity.name, quantity.unit)));
-            let curves: Vec<_> = curves.into_keys().collect();
+            let curves: Vec<_> = kind.curves().iter().map(|curve| curve.name).collect();
+            let of_curves = kind.curves().iter().map(|curve| (curve.name, curve.unit));
+            let all =
+                of_curves.chain(kind.quantities().iter().map(|quantity| (quantity.name, quantity.unit)));
+            let bases = |unit| dimension_of(unit).into_iter().flat_map(Dimension::bases);
+            let units: BTreeMap<_, _> =
+                all.map(|(name, unit)| (name, (unit, bases(unit).collect::<BTreeMap<_, _>>()))).collect();
             question["unit"] = json!({
                 "file": file, "variables": variables, "start": start, "curves": curves, "units": units, "interface": interface,
             });

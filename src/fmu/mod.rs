@@ -46,14 +46,6 @@ pub struct UnitParts<'a> {
     pub version: Version,
 }
 
-/// The number of a version of the standard.
-pub fn number(version: Version) -> &'static str {
-    match version {
-        Version::Two => "2.0",
-        Version::Three => "3.0",
-    }
-}
-
 /// The content of a unit's file.
 #[derive(Debug)]
 pub struct Packed {
@@ -109,7 +101,7 @@ pub fn packed(parts: &UnitParts) -> Result<Packed> {
     unit.add(icon, &png(ICON, ICON_SCALE)?)?;
     unit.add(
         "documentation/index.html",
-        unit_page(scene, summary, number(parts.version), &variables).as_bytes(),
+        unit_page(scene, summary, parts.version.number(), &variables).as_bytes(),
     )?;
     unit.add("documentation/licenses/license.txt", LICENCES.as_bytes())?;
     unit.add(&format!("resources/{SCENE}"), text.as_bytes())?;

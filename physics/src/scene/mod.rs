@@ -39,7 +39,7 @@ pub use parts::{
     Bender, Edge, Fluid, Inner, Outer, Plate, Series, Shape, ShearThinning, Spot, Stack, Supply, Turning,
 };
 pub use plausibility::doubts;
-pub use quantity::in_unit as quantity_in;
+pub use quantity::{Dimension, dimension_of, in_unit as quantity_in};
 pub use read::MAX_FILE_BYTES;
 pub(crate) use setup::Bodies;
 pub use setup::Setup;

@@ -114,6 +114,11 @@ impl Dimension {
         value == 0.0 || (low..=high).contains(&value.abs())
     }
 
+    /// Base units of the SI, and the radian, with their exponents; those that are not 0.
+    pub fn bases(self) -> impl Iterator<Item = (&'static str, i32)> {
+        ["m", "kg", "s", "rad", "A"].into_iter().zip(self.0).filter(|(_, exponent)| *exponent != 0)
+    }
+
     /// The SI unit behind a number; nothing for a pure number.
     pub fn suffix(self) -> String {
         if self == Dimension::NONE { String::new() } else { format!(" {}", self.describe().1) }
