@@ -17,6 +17,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
+// clap names a group of arguments after its type, and `compare` has the same
+#[group(skip)]
 pub struct Arguments {
     #[command(flatten)]
     pub(super) compare: compare_arguments::Arguments,
