@@ -8,6 +8,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+/// The models for pages, below the folder of a build.
+const LIVE: &str = "wasm32-unknown-unknown/live/impactcheck_live.wasm";
+
 /// An expression of type `(&str, &[(&str, &[u8])])`: a word that changes with the files, and their paths, relative to the
 /// project, with their contents.
 #[proc_macro]
@@ -43,6 +46,22 @@ pub fn unit(_: TokenStream) -> TokenStream {
     }
     .parse()
     .expect("Rust")
+}
+
+/// An expression of type `&[u8]`: the models for pages, as `make live-page` has compiled them; empty where it has not.
+#[proc_macro]
+pub fn live(_: TokenStream) -> TokenStream {
+    let arguments: Vec<String> = std::env::args().collect();
+    let folders = arguments.iter().filter_map(|argument| argument.strip_prefix("dependency="));
+    // in the folder of the build of this machine, whatever the profile
+    let mut places = folders.flat_map(|folder| Path::new(folder).ancestors().map(|place| place.join(LIVE)));
+    let found = places.find(|path| path.is_file()).and_then(|path| path.canonicalize().ok());
+    found
+        .map_or("&[]".to_owned(), |path| {
+            format!("include_bytes!({:?}).as_slice()", path.display().to_string())
+        })
+        .parse()
+        .expect("Rust")
 }
 
 fn is_selected(path: &str, shipped: impl Fn(&str) -> bool) -> bool {

@@ -14,7 +14,7 @@ use impactcheck::cli::in_process::{self, Comparing, ModelRequest, PredictedSumma
 use impactcheck::interrupt;
 use impactcheck::kinds::SharedBodies;
 use impactcheck::result::{History, Outcome};
-use impactcheck::{Error, Result, cli, fmu, project, reference};
+use impactcheck::{Error, Result, cli, fmu, project, reference, report};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use samples::Samples;
@@ -31,6 +31,7 @@ mod python {
 
 static FILES: project::Embedded = impactcheck_embedded::files!();
 static UNIT: &[u8] = impactcheck_embedded::unit!();
+static LIVE: &[u8] = impactcheck_embedded::live!();
 
 /// An error of the program as Python raises it.
 fn raised(error: Error) -> PyErr {
@@ -170,6 +171,7 @@ fn main(py: Python, arguments: Vec<OsString>) -> u8 {
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     project::embed(FILES);
     fmu::embed(UNIT);
+    report::embed_live(LIVE);
     reference::mesh_bodies();
     let interpreter = module.py().import("sys")?.getattr("executable")?;
     if let Ok(interpreter) = interpreter.extract() {

@@ -3,6 +3,7 @@
 use super::compare_arguments::Arguments;
 use super::compare_inputs;
 use super::external;
+use super::live;
 use super::propagated::propagate;
 use super::requested_model::RequestedModel;
 use super::second_program;
@@ -267,6 +268,7 @@ impl<'a> Job<'a> {
                 acceptances: acceptance::read(file)?,
                 validated: Arc::clone(&validated),
                 coverage: coverage.clone(),
+                live: live::of_report(context, file, scene, stored),
                 ..Attachments::of(scene, stored)
             };
             scenes.push(SceneReport {

@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// The commands by what a user does with them.
 const GROUPS: [(&str, &[&str]); 5] = [
     ("Start", &["new", "doctor", "schema", "completions", "man", "help"]),
-    ("Compute", &["reduced", "reference", "mesh", "fmu"]),
+    ("Compute", &["reduced", "reference", "mesh", "fmu", "live"]),
     ("Compare", &["compare", "gate", "coverage", "diff"]),
     ("Study", &["study", "uncertainty", "calibrate", "optimise"]),
     ("Test the program", &["bench", "stress"]),

@@ -15,6 +15,7 @@ mod gate;
 mod help;
 pub mod in_process;
 mod kinds;
+mod live;
 mod mesh;
 mod new;
 mod optimise;
@@ -119,6 +120,11 @@ enum Command {
         after_help = "Examples: impactcheck fmu scaled-plate-r10 -o plate.fmu\n          impactcheck fmu my-valve.toml --fmi 2 -o valve.fmu"
     )]
     Fmu(fmu::Arguments),
+    /// Write a page in which the models answer while you change numbers
+    #[command(
+        after_help = "Examples: impactcheck live scaled-plate-r10 -o plate.html\n          impactcheck live my-impact.toml"
+    )]
+    Live(live::Arguments),
     /// Show what is installed and how to install what is missing
     #[command(after_help = "Example: impactcheck doctor")]
     Doctor(JsonArgument),
@@ -226,6 +232,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Stress(arguments) => stress::run(&context, &arguments),
         Command::Fmu(arguments) => fmu::run(&context, &arguments),
+        Command::Live(arguments) => live::run(&context, &arguments),
         Command::Doctor(arguments) => doctor::run(&context, arguments),
         Command::Schema => schema::run(),
         Command::New(arguments) => new::run(&context, &arguments),

@@ -5,7 +5,7 @@ use crate::ci::trend::Trend;
 use crate::coverage::Coverage;
 use crate::project::project_root;
 use crate::reference::{CurveBands, Dents, FieldMesh, MeshSection, SolidStress, Stored};
-use crate::report::kinds;
+use crate::report::{LiveScene, kinds};
 use crate::result::History;
 use crate::scene::Scene;
 use crate::validated::Validation;
@@ -45,6 +45,8 @@ pub struct Attachments {
     pub validated: Arc<[Validation]>,
     /// Which features of scenes are compared with what.
     pub coverage: Option<Arc<Coverage>>,
+    /// The scene for the live page, if there is one.
+    pub live: Option<LiveScene>,
 }
 
 /// What a reduced model has cost.

@@ -30,6 +30,7 @@ pub use figure::scene::{FIGURE_WIDTHS, figure, measured_figure, printed_figure};
 pub use figure::sweep::{Drawn, sweep_figure};
 pub use kinds::{Arrow, seat_picture};
 pub use page::index::index_page;
+pub use page::live::{LiveScene, embed_live, has_live, live_page};
 pub use page::model::{body_page, model_page};
 pub use page::moves::moves_page;
 pub use page::scene::scene_page;

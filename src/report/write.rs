@@ -10,6 +10,7 @@ use crate::report::export::{Csv, Export, Json};
 use crate::report::kinds::Drawing;
 use crate::report::page::coverage;
 use crate::report::page::index::Index;
+use crate::report::page::live::{self, LiveScene};
 use crate::report::page::measured::measured_page;
 use crate::report::page::scene::Page;
 use crate::report::page::validated_map::{self, ValidatedMap};
@@ -34,7 +35,7 @@ const OF_ALL: [(&str, &OfFolder); 4] =
 /// Files of each scene, of its name.
 const OF_SCENE: [&dyn for<'s> Export<SceneReport<'s>>; 2] = [&Csv, &Page];
 
-/// Writes `index.html`, `coverage.html`, `comparison.json`, `comparison.md`, `junit.xml`, the map of validated scenes (SVG) and, per scene, its
+/// Writes `index.html`, `coverage.html`, `live.html` (if the program has the models for pages), `comparison.json`, `comparison.md`, `junit.xml`, the map of validated scenes (SVG) and, per scene, its
 /// page, figure (SVG, PNG) and curves (CSV) into `dir`, which is made if it does not exist.
 ///
 /// Index, JSON and Markdown are of all scenes whose results stand in the folder: a scene that an earlier run has compared
@@ -49,7 +50,10 @@ const OF_SCENE: [&dyn for<'s> Export<SceneReport<'s>>; 2] = [&Csv, &Page];
 /// [`Error::Io`] naming the folder or file; [`Error::Usage`] for scenes whose names can't be file
 /// names or are the same.
 pub fn write(report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
-    write_files(files(report, &existing::in_folder(report, dir))?, dir)
+    let existing = existing::in_folder(report, dir);
+    let mut files = files(report, &existing)?;
+    files.extend(live_page_of(report, &existing, dir)?);
+    write_files(files, dir)
 }
 
 /// Writes what records of `scene` show of its models, without a reference, into `dir`: `NAME-measured.html` and its figures, which no
@@ -67,6 +71,24 @@ pub fn write_measured(scene: &Scene, models: &[Outcome], measured: &Measured, di
     }
     write_files(files, dir)?;
     Ok(dir.join(page))
+}
+
+/// The live page of the scenes of `report`, and of those that its page in `dir` had and that are kept.
+fn live_page_of(
+    report: &Report,
+    existing: &[ExistingScene],
+    dir: &Path,
+) -> Result<Option<(String, Vec<u8>)>> {
+    let mut scenes: Vec<LiveScene> =
+        report.scenes.iter().filter_map(|scene| scene.attachments.live.clone()).collect();
+    if scenes.is_empty() {
+        return Ok(None);
+    }
+    let is_kept = |scene: &LiveScene| {
+        existing.iter().any(|other| other.is_earlier() && other.overview.scene == scene.name())
+    };
+    scenes.extend(LiveScene::all_in(dir).into_iter().filter(is_kept));
+    Ok(Some((live::FILE.to_owned(), live::live_page(&scenes, report.validated())?.into_bytes())))
 }
 
 fn write_files(files: Vec<(String, Vec<u8>)>, dir: &Path) -> Result<Vec<PathBuf>> {
@@ -141,7 +163,7 @@ fn files(report: &Report, existing: &[ExistingScene]) -> Result<Vec<(String, Vec
     for scene in &report.scenes {
         let name = &scene.comparison.scene;
         require_file_name(name)?;
-        if !names.insert(name) || ["index", coverage::NAME].contains(&&**name) {
+        if !names.insert(name) || ["index", "live", coverage::NAME].contains(&&**name) {
             return Err(Error::Usage(format!("scene name `{name}` occurs twice in the report")));
         }
         for drawing in kinds::of(scene.scene).drawings(scene) {

@@ -3,7 +3,7 @@
 use super::of;
 use super::seal_seat::SeatMesh;
 use crate::error::{Error, Result};
-use crate::result::{CUT, Outcome, Point, Summary, Table};
+use crate::result::{CUT, History, Outcome, Point, Summary, Table};
 use crate::scene::{Model, Scene};
 use std::fmt::Debug;
 
@@ -35,6 +35,16 @@ pub trait SeriesModel: Debug + Send + Sync {
     /// As there.
     fn run(&self, tolerance: f64) -> Result<Summary> {
         Ok(self.run_with_history(tolerance)?.summary)
+    }
+
+    /// Results and course alone, without estimates of errors and without warnings, where that is quicker: for a page that follows a
+    /// number while it is dragged.
+    ///
+    /// # Errors
+    /// As [`SeriesModel::run`].
+    fn course(&self, tolerance: f64) -> Result<(Table, History)> {
+        let Outcome { summary, history } = self.run_with_history(tolerance)?;
+        Ok((summary.quantities, history))
     }
 
     /// The results alone, of which every one has to be determined.

@@ -10,4 +10,5 @@ pub mod quadrature;
 pub(crate) mod root;
 pub(crate) mod stages;
 pub mod stationary_noise;
+pub(crate) mod stopwatch;
 pub(crate) mod vectors;

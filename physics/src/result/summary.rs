@@ -247,8 +247,8 @@ impl Summary {
         self.quantities.iter().filter(|quantity| quantity.value.is_none()).map(|quantity| quantity.name)
     }
 
-    /// What a reduced model of `scene` says; balances, steps and time are still to be told.
-    pub(crate) fn of_reduced(scene: &Scene, model: Model, modes: usize, quantities: Table) -> Self {
+    /// What a reduced model of `scene` says, without balances, steps and time.
+    pub fn of_reduced(scene: &Scene, model: Model, modes: usize, quantities: Table) -> Self {
         Self {
             modes: Some(modes),
             ..Self::new(scene, (Source::Reduced, Some(model.to_string())), quantities)

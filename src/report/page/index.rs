@@ -13,6 +13,7 @@ use crate::report::page::coverage;
 use crate::report::page::html::{
     EFFICIENCY, assumptions_badge, badge, named, number, page, scrolled, worded,
 };
+use crate::report::page::live;
 use crate::report::page::validated_map::ValidatedMap;
 use crate::report::run_times::marked;
 use crate::report::trust::size_class;
@@ -57,6 +58,9 @@ pub(crate) fn index_of(report: &Report, scenes: &[ExistingScene]) -> String {
         p.soft.note { (EFFICIENCY) } p.soft.note { (AMONG) }
         @if report.coverage().is_some() {
             p { a href=(coverage::FILE) { "Coverage" } ": which features of scenes were compared with what, and how far models differ there." }
+        }
+        @if report.scenes.iter().any(|scene| scene.attachments.live.is_some()) {
+            p { a href=(live::FILE) { "Live page" } ": change numbers of a scene and see what the models give." }
         }
         p { "As data: " a href="comparison.json" { "JSON" } " · " a href="comparison.md" { "Markdown" } " · "
             a href="junit.xml" { "JUnit" } }

@@ -32,14 +32,14 @@ pub(crate) fn scripts(report: &SceneReport, panels: &[PanelOf]) -> Markup {
         script type="application/json" id="comparison" { (PreEscaped(embedded(&report.comparison))) }
         @if report.comparison.window.is_some() {
             script type="application/json" id="curves" { (PreEscaped(embedded(&curves(report, panels)))) }
-            script type="text/javascript" { (PreEscaped(script(PLOTTING, PLOTTING_LICENCE))) }
+            script type="text/javascript" { (PreEscaped(plotting())) }
             script type="text/javascript" { (PreEscaped(PANELS)) }
         }
     }
 }
 
-/// A library with its licence in place of the line that names its address.
-fn script(library: &str, licence: &str) -> String {
-    let code = library.split_once('\n').map_or(library, |(_, code)| code);
-    format!("/*! uPlot 1.6.32\n{licence}*/\n{code}")
+/// The plotting library with its licence in place of the line that names its address.
+pub(crate) fn plotting() -> String {
+    let code = PLOTTING.split_once('\n').map_or(PLOTTING, |(_, code)| code);
+    format!("/*! uPlot 1.6.32\n{PLOTTING_LICENCE}*/\n{code}")
 }

@@ -7,6 +7,7 @@ mod first_screen;
 pub(crate) mod html;
 pub(crate) mod index;
 mod interactive;
+pub(crate) mod live;
 pub(super) mod measured;
 pub(crate) mod model;
 pub(crate) mod moves;

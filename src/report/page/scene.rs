@@ -10,7 +10,7 @@ use crate::report::page::html::{assumptions_badge, model_badge, page, scene_badg
 use crate::report::page::section::discrepancy::{checks, contradictions, model_section};
 use crate::report::page::section::{self, Section, contents, sections};
 use crate::report::page::validated_map::ValidatedMap;
-use crate::report::page::{discrepancy_picture, first_screen, interactive};
+use crate::report::page::{discrepancy_picture, first_screen, interactive, live};
 use crate::report::{SceneReport, Theme, figure, kinds};
 use crate::validated::Place;
 use maud::{Markup, html};
@@ -101,6 +101,9 @@ fn curves(report: &SceneReport) -> Markup {
             a href=(format!("{scene}.svg")) { "SVG" } " · "
             a href=(format!("{scene}.png")) { "PNG" } " · "
             a href=(format!("{scene}.csv")) { "curves as CSV" }
+            @if report.attachments.live.is_some() {
+                " · " a href=(format!("{}#scene={scene}", live::FILE)) { "change numbers and see the impact (live page)" }
+            }
         }
     }
 }

@@ -63,7 +63,18 @@ impl TetMesh {
     /// # Errors
     /// [`Error::Solver`] if the file can't be read as VTK or its mesh is unusable.
     pub fn read(path: &Path) -> Result<Self> {
-        let file = MeshFile::read(path)?;
+        Self::first_of(MeshFile::read(path)?, path)
+    }
+
+    /// As [`Self::read`] of the `content` of a `.vtu` file, which messages call `path`.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(path: &Path, content: &[u8]) -> Result<Self> {
+        Self::first_of(MeshFile::of(Vtk::parse_xml(content), path)?, path)
+    }
+
+    fn first_of(file: MeshFile, path: &Path) -> Result<Self> {
         let of_first = file.cell_array("body").map(|bodies| {
             let body = bodies.first().copied();
             bodies.iter().take_while(|other| Some(**other) == body).count()
@@ -193,8 +204,12 @@ impl MeshFile {
     /// # Errors
     /// [`Error::Solver`] if the file can't be read as VTK or holds other cells.
     pub(super) fn read(path: &Path) -> Result<Self> {
+        Self::of(Vtk::import(path), path)
+    }
+
+    fn of(vtk: std::result::Result<Vtk, vtkio::Error>, path: &Path) -> Result<Self> {
         let failed = |what: &str| unusable(path, what);
-        let vtk = Vtk::import(path).map_err(|e| failed(&format!("can't be read as VTK: {e}")))?;
+        let vtk = vtk.map_err(|e| failed(&format!("can't be read as VTK: {e}")))?;
         let piece = grid(vtk).map_err(|what| failed(&what))?;
         let points = piece.points.cast_into::<f64>().ok_or_else(|| failed("its points are no numbers"))?;
         let order = match piece.cells.types.first() {

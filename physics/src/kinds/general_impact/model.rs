@@ -19,11 +19,11 @@ use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncou
 use crate::kinds::rubbing::{Rubbed, moves_along};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::Material;
+use crate::numerics::stopwatch::Stopwatch;
 use crate::result::{
     BenderSummary, CUT, ElasticLimit, History, Outcome, Point, StackSummary, Summary, Table,
 };
 use crate::scene::{self, Inner, Model, Outer, Scene};
-use std::time::Instant;
 
 /// Tolerance of the runs that compare force peaks with and without what the model omits.
 const LOW_ACCURACY: f64 = 1e-6;
@@ -152,10 +152,10 @@ impl ContactModel {
 
     /// The summary, what the materials remembered when the last impact began, and with which steps it converged.
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>, Option<Converged>)> {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let options = self.keeping_forces(Options { heat: true, ..self.options(tolerance) })?;
         let Done { last, impacts, memory, warnings } = self.with_impacts(|all| all.all(&options))?;
-        let seconds = start.elapsed().as_secs_f64();
+        let seconds = start.seconds();
         let mut summary = self.summary(&last, tolerance)?;
         summary.solve_seconds = seconds;
         summary.warnings.extend(warnings);

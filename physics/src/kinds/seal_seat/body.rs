@@ -31,8 +31,8 @@ pub struct SeatMesh {
     path: PathBuf,
     content_hash: String,
     geometry_hash: Option<String>,
-    /// Where its nodes have been moved to, if they have.
-    moved: Option<Arc<TetMesh>>,
+    /// Its nodes and elements, if they are known without the file, or have been moved.
+    nodes: Option<Arc<TetMesh>>,
 }
 
 /// Half a seat, seen from its contact candidates.
@@ -59,7 +59,22 @@ impl SeatMesh {
             path: path.to_path_buf(),
             content_hash: sha256_hex(&content),
             geometry_hash: recorded_geometry(&content),
-            moved: None,
+            nodes: None,
+        })
+    }
+
+    /// The mesh with the `content` of a `.vtu` file, which messages call `name`.
+    ///
+    /// # Errors
+    /// As [`TetMesh::read`].
+    pub fn parse(name: &str, content: &[u8]) -> Result<Self> {
+        let path = PathBuf::from(name);
+        let nodes = TetMesh::parse(&path, content)?;
+        Ok(Self {
+            path,
+            content_hash: sha256_hex(content),
+            geometry_hash: recorded_geometry(content),
+            nodes: Some(Arc::new(nodes)),
         })
     }
 
@@ -68,7 +83,7 @@ impl SeatMesh {
     /// # Errors
     /// As [`TetMesh::read`].
     pub(super) fn read(&self) -> Result<Arc<TetMesh>> {
-        self.moved.clone().map_or_else(|| TetMesh::read(&self.path).map(Arc::new), Ok)
+        self.nodes.clone().map_or_else(|| TetMesh::read(&self.path).map(Arc::new), Ok)
     }
 
     /// The same with its nodes at those of `mesh`, which is one of the seat of `scene`.
@@ -78,7 +93,7 @@ impl SeatMesh {
             path: self.path.clone(),
             content_hash: sha256_hex(format!("{}{geometry}", self.content_hash).as_bytes()),
             geometry_hash: Some(geometry),
-            moved: Some(Arc::new(mesh)),
+            nodes: Some(Arc::new(mesh)),
         }
     }
 

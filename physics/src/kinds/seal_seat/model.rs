@@ -17,11 +17,11 @@ use crate::error::{Error, Result};
 use crate::kinds::flight;
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::vibration_frequency;
+use crate::numerics::stopwatch::Stopwatch;
 use crate::result::{CUT, History, Losses, Outcome, Point, Summary, Table};
 use crate::scene::DEFAULT_MODES;
 use crate::scene::{Model, Scene};
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Relative error of the sphere's velocity from the time integration when the caller names none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
@@ -101,7 +101,7 @@ impl SeatModel {
         mut zones: Zones,
         build: &mut dyn FnMut(&Zones, usize) -> Result<Arc<SeatBody>>,
     ) -> Result<Self> {
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let setup = scene.seal_seat()?;
         if model != Model::C {
             return Err(Error::Usage(format!(
@@ -118,8 +118,7 @@ impl SeatModel {
             let predictor = built.integrate(built.first_step, false)?;
             let wider = zones.widened(predictor.tally.reach).map_or(zones, |wider| wider.at_most(setup));
             if wider == zones {
-                let (predictor, setup_seconds) =
-                    (predictor.state.sphere_velocity, started.elapsed().as_secs_f64());
+                let (predictor, setup_seconds) = (predictor.state.sphere_velocity, started.seconds());
                 return Ok(Self { predictor, setup_seconds, ..built });
             }
             zones = wider;
@@ -195,9 +194,9 @@ impl SeatModel {
     /// # Errors
     /// As [`integrate`] and [`balance_check`]; [`Error::Solver`] if the tolerance can't be reached.
     pub fn run(&self, tolerance: f64) -> Result<Summary> {
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let (result, _) = self.converged(tolerance)?;
-        let mut summary = self.summary(&result, tolerance, started.elapsed().as_secs_f64())?;
+        let mut summary = self.summary(&result, tolerance, started.seconds())?;
         Kind.judge(&self.scene, &mut summary, None);
         self.add_flight(&mut summary)?;
         Ok(summary)
@@ -208,9 +207,9 @@ impl SeatModel {
     /// # Errors
     /// As [`SeatModel::run`].
     pub fn run_with_history(&self, tolerance: f64) -> Result<Outcome> {
-        let started = Instant::now();
+        let started = Stopwatch::start();
         let (result, step) = self.converged(tolerance)?;
-        let mut summary = self.summary(&result, tolerance, started.elapsed().as_secs_f64())?;
+        let mut summary = self.summary(&result, tolerance, started.seconds())?;
         let history = history(&self.integrate(step, true)?);
         summary.samples = Some(history.len());
         Kind.judge(&self.scene, &mut summary, Some(&history));

@@ -18,9 +18,11 @@ use crate::kinds::plate_impact::validity::film_warning;
 use crate::kinds::plate_impact::{Kind, PlateImpact};
 use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, moves_along};
 use crate::kinds::{Kind as _, SeriesModel};
-use crate::result::{self, BenderSummary, CUT, ElasticLimit, Outcome, StackSummary, Summary, Table, limit};
+use crate::numerics::stopwatch::Stopwatch;
+use crate::result::{
+    self, BenderSummary, CUT, ElasticLimit, History, Outcome, StackSummary, Summary, Table, limit,
+};
 use crate::scene::{self, Shape};
-use std::time::Instant;
 
 /// Samples within steps and flights of a history that only the limits need: the deflection is sampled.
 const JUDGED_SAMPLES: usize = 1 << 12;
@@ -75,10 +77,10 @@ impl Reduced {
 
     /// The summary, what the materials remembered when the last impact began, and with which steps it converged.
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>, Option<Converged>)> {
-        let start = Instant::now();
+        let start = Stopwatch::start();
         let options = self.keeping_forces(Options { heat: true, ..self.options(tolerance) })?;
         let Done { last, impacts, memory, warnings } = self.impacts().all(&options)?;
-        let mut summary = self.summary(&last, tolerance, start.elapsed().as_secs_f64())?;
+        let mut summary = self.summary(&last, tolerance, start.seconds())?;
         summary.warnings.extend(warnings);
         let elastic_efficiency = self.impacts().elastic_efficiency(&options);
         let elastic_limit = self.elastic_limit(&options)?;
@@ -224,6 +226,15 @@ impl Reduced {
         self.sampled(tolerance, end, SAMPLES_BETWEEN)
     }
 
+    /// Results and history of a single impact, from one integration.
+    fn unjudged_course(&self, tolerance: f64) -> Result<(Table, History)> {
+        let sample_interval = Some(self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
+        let options = self.keeping_forces(Options { sample_interval, ..self.options(tolerance) })?;
+        let (result, _) = self.impacts().one(&options, self.memory.as_ref())?;
+        let table = self.table(&result, self.rubbed(&result)?.as_ref());
+        Ok((table, result.history.ok_or_else(|| Error::Internal("a history was requested".into()))?))
+    }
+
     /// A run until `end` s with at most `samples_between` samples within steps and flights.
     fn sampled(&self, tolerance: f64, end: f64, samples_between: usize) -> Result<Outcome> {
         let (mut summary, memory, converged) = self.unjudged(tolerance)?;
@@ -266,6 +277,26 @@ impl Reduced {
 
     fn options(&self, tolerance: f64) -> Options {
         Options { tolerance, end_time: self.scene.run.end_time, ..Options::default() }
+    }
+
+    /// The quantities of `result`, without those that it does not determine.
+    fn table(&self, result: &Integration, rubbed: Option<&Rubbed>) -> Table {
+        let system = &self.system;
+        let mut table = self.of_all_energy(values(system, result), rubbed).table();
+        if result.stop == StopReason::Cut {
+            table = table.cut();
+        }
+        if system.stack.is_some() {
+            // eq. (1) relates to a kinetic energy before the impact, and the tip vibrates on
+            let open = ["efficiency", "outer_velocity_final"].into_iter();
+            let pressing = ["outer_contact_end", "outer_contacts"]
+                .into_iter()
+                .filter(|_| result.stop == StopReason::Pressed);
+            for name in open.chain(pressing) {
+                table.value_mut(name).into_iter().for_each(|value| *value = None);
+            }
+        }
+        table
     }
 
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
@@ -325,22 +356,10 @@ impl Reduced {
                 "motion along the plate is omitted by the reduced models; the reference includes it".into(),
             );
         }
-        let values = self.of_all_energy(values(system, result), rubbed.as_ref());
-        let mut table = values.table();
         if result.stop == StopReason::Cut {
-            table = table.cut();
             warnings.push(CUT.into());
         }
-        if system.stack.is_some() {
-            // eq. (1) relates to a kinetic energy before the impact, and the tip vibrates on
-            let open = ["efficiency", "outer_velocity_final"].into_iter();
-            let pressing = ["outer_contact_end", "outer_contacts"]
-                .into_iter()
-                .filter(|_| result.stop == StopReason::Pressed);
-            for name in open.chain(pressing) {
-                table.value_mut(name).into_iter().for_each(|value| *value = None);
-            }
-        }
+        let table = self.table(result, rubbed.as_ref());
         Ok(Summary {
             energy_residual: Some(result.energy_residual),
             momentum_residual: Some(result.momentum_residual),
@@ -385,6 +404,14 @@ impl SeriesModel for Reduced {
 
     fn run(&self, tolerance: f64) -> Result<Summary> {
         Reduced::run(self, tolerance)
+    }
+
+    fn course(&self, tolerance: f64) -> Result<(Table, History)> {
+        if self.scene.plate_impact()?.series.is_none() {
+            return self.unjudged_course(tolerance);
+        }
+        let Outcome { summary, history } = Reduced::run_with_history(self, tolerance)?;
+        Ok((summary.quantities, history))
     }
 
     /// `tolerance` bounds the error of the time integration in all results.

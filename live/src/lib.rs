@@ -1,0 +1,44 @@
+//! The reduced models in a web page: a scene, open to other numbers, and what the models give for them.
+//!
+//! Compiled to WebAssembly it reads no file and starts nothing. The page asks in JSON and gets JSON, through two functions.
+
+#![warn(missing_docs)]
+
+mod curves;
+mod page;
+mod request;
+
+pub use page::LivePage;
+pub use request::Request;
+
+use std::cell::RefCell;
+
+thread_local! {
+    static PAGE: RefCell<LivePage> = RefCell::new(LivePage::default());
+    static TEXT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Address of room for a request of so many `bytes`, which the page writes there.
+#[unsafe(no_mangle)]
+pub extern "C" fn room(bytes: usize) -> *mut u8 {
+    TEXT.with_borrow_mut(|text| {
+        *text = vec![0; bytes];
+        text.as_mut_ptr()
+    })
+}
+
+/// Answers the request that stands in [`room`], where the answer then stands; returns its length in bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn answer() -> usize {
+    let request = TEXT.take();
+    let answer = PAGE.with_borrow_mut(|page| page.answer(&request)).into_bytes();
+    let length = answer.len();
+    TEXT.set(answer);
+    length
+}
+
+/// Address of the answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn answered() -> *const u8 {
+    TEXT.with_borrow(|text| text.as_ptr())
+}
