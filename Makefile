@@ -1,6 +1,7 @@
 # make test      installs what is missing and runs every check
 # make setup     only the installation, into target/python-tools; no root where there is Python 3.12 or later
 # make report    the report of the shipped scenes, into reports/
+# make live-page the models for live pages, compiled to WebAssembly, into the program (with rustup)
 # make wheel    the Python package, into target/wheels, and a clean environment with it: target/wheel-python
 # make solutions computes the stored references of the shipped scenes again
 # make validation  solves the random scenes that the table of predictions lacks: hours; goes on where it was stopped
@@ -22,7 +23,7 @@ OUT    := target/check
 # the one check that needs what only root installs; without it the last line says so, and CI fails
 BROWSER  = $(or $(CHROMIUM),$(shell command -v chromium || command -v chromium-browser || command -v google-chrome))
 UNCHECKED = $(if $(BROWSER)$(CI),,browser::)
-SCRIPTS := fem_reference examples python validation benches tests/freeze guide/check guide/generate
+SCRIPTS := fem_reference examples live python validation benches tests/freeze guide/check guide/generate
 SCENES := $(basename $(notdir $(wildcard scenes/*.toml)))
 # meshes of a solid at `fine` take an hour
 PLATES := $(filter-out seal-seat-%,$(SCENES))
@@ -31,11 +32,15 @@ PLATES := $(filter-out seal-seat-%,$(SCENES))
 ASIDE := scenes/validation/off-centre.toml
 SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-light polymer-plate supported-plate titanium-sapphire)
 
-.PHONY: test setup lint rust wheel python live gate report solutions validation evidence
+# the models for live pages
+WASM   := target/wasm32-unknown-unknown/live/impactcheck_live.wasm
+
+.PHONY: test setup lint live-page rust wheel python live gate report solutions validation evidence
 
 # packages are fetched while the compiler works
 test:
 	@$(MAKE) --no-print-directory -j2 setup lint
+	@$(MAKE) --no-print-directory live-page || echo "the live page is not built and not tested: it needs rustup target add wasm32-unknown-unknown"
 	@$(MAKE) --no-print-directory rust python live gate
 	@echo "all checks passed$(if $(UNCHECKED), but one: pages in a browser need Chromium (as root: apt-get install chromium))"
 
@@ -45,6 +50,13 @@ setup:
 lint:
 	cargo fmt --all --check
 	cargo clippy --release --workspace --all-targets -- -D warnings
+
+# cargo sees that the file has changed, but not that it was made
+live-page:
+	@rustup target add wasm32-unknown-unknown
+	@new=$$(test -f $(WASM) || echo yes); \
+	    cargo build --profile live --package impactcheck-live --target wasm32-unknown-unknown && \
+	    if [ -n "$$new" ]; then touch src/main.rs python/src/lib.rs; fi
 
 rust: lint
 	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --workspace --no-fail-fast $(if $(UNCHECKED),-E 'not test(/^$(UNCHECKED)/)'); \
@@ -65,7 +77,7 @@ python: setup wheel
 	guide/check
 	$(TOOL) -m mypy
 	cargo build --release
-	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference validation
+	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference validation live
 	guide/generate target/release/impactcheck --check
 	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck IMPACTCHECK_PYTHON=$(or $(IMPACTCHECK_PYTHON),$(CURDIR)/$(TOOL)) \
 	    $(WHEEL)/bin/python -m pytest -q -n auto --dist worksteal python
@@ -125,7 +137,7 @@ evidence: setup wheel
 	# a random tenth of the scenes that predictions rest on
 	$(TOOL) validation/draw.py $(OUT)/validation/scenes
 	IMPACTCHECK_PYTHON=$(PYTHON) $(TOOL) validation/check.py $(OUT)/validation/scenes validation/base.jsonl
-	$(TOOL) -m pytest -q -n auto --dist worksteal -m evidence fem_reference
+	$(TOOL) -m pytest -q -n auto --dist worksteal -m evidence fem_reference live
 	cargo nextest run --release --workspace --ignore-default-filter -E 'not default()'
 	# flights of the sphere by another program
 	$(TOOL) -m fem_reference flights --out fem_reference/solutions/flights.json

@@ -6,8 +6,16 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// Folders with the sources of product and reference.
-const FOLDERS: [&str; 7] =
-    ["embedded/src", "fem_reference", "fmu/src", "physics/src", "prediction/src", "python", "src"];
+const FOLDERS: [&str; 8] = [
+    "embedded/src",
+    "fem_reference",
+    "fmu/src",
+    "live/src",
+    "physics/src",
+    "prediction/src",
+    "python",
+    "src",
+];
 /// The folder whose folders are the kinds of scenes.
 const KINDS: &str = "physics/src/kinds";
 

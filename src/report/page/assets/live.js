@@ -136,11 +136,11 @@
     return { low, high, log: false };
   }
   const share = (field, v) => {
-    const { low, high, log } = range(field);
+    const { low, high, log } = field.range;
     return log ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low);
   };
   const at = (field, part) => {
-    const { low, high, log } = range(field);
+    const { low, high, log } = field.range;
     const v = log ? low * (high / low) ** part : low + part * (high - low);
     return field.count ? Math.round(v) : +v.toPrecision(4);
   };
@@ -193,8 +193,6 @@
       refuse("");
       set(field, at(field, slider.value / 1000), true);
     });
-    // a range that was stretched by the drag is centred again
-    slider.addEventListener("change", () => show(field));
     lock.addEventListener("click", () => {
       const locked = !state.locks.has(field.path);
       locked ? state.locks.add(field.path) : state.locks.delete(field.path);
@@ -206,6 +204,8 @@
 
   function show(field, dragged = false) {
     field.box.value = text(field);
+    // it stays while the slider moves
+    if (!dragged) field.range = range(field);
     if (!dragged) field.slider.value = Math.round(1000 * share(field, value(field)));
     field.slider.setAttribute("aria-valuetext", text(field));
   }
