@@ -9,7 +9,7 @@ mod page;
 mod request;
 
 pub use page::LivePage;
-pub use request::Request;
+pub use request::PageRequest;
 
 use std::cell::RefCell;
 

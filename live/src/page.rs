@@ -1,7 +1,7 @@
 //! The scene of a page, and what its models give.
 
 use crate::curves;
-use crate::request::{Numbers, Request};
+use crate::request::{Numbers, PageRequest};
 use impactcheck_physics::kinds::{self, FollowedMesh, Kind, Series};
 use impactcheck_physics::result::{Outcome, Summary, Table};
 use impactcheck_physics::scene::{Field, Model, Scene, Template};
@@ -44,8 +44,8 @@ impl LivePage {
         .to_string()
     }
 
-    fn of(&mut self, request: Request) -> Result<Value> {
-        if let Request::Open { scene, mesh, tolerance } = request {
+    fn of(&mut self, request: PageRequest) -> Result<Value> {
+        if let PageRequest::Open { scene, mesh, tolerance } = request {
             let opened = Opened::new(&scene, mesh.as_deref(), tolerance)?;
             let described = opened.described();
             self.opened = Some(opened);
@@ -53,23 +53,23 @@ impl LivePage {
         }
         let opened = self.opened.as_ref().ok_or_else(|| Error::Usage("no scene is open".into()))?;
         match request {
-            Request::Open { .. } => unreachable!("answered above"),
-            Request::Run { model, numbers, end, samples } => opened.run(&model, &numbers, (end, samples)),
-            Request::Course { model, numbers, end, samples } => {
+            PageRequest::Open { .. } => unreachable!("answered above"),
+            PageRequest::Run { model, numbers, end, samples } => opened.run(&model, &numbers, (end, samples)),
+            PageRequest::Course { model, numbers, end, samples } => {
                 opened.course(&model, &numbers, (end, samples))
             }
-            Request::Values { model, quantity, points } => opened.values(&model, &quantity, &points),
-            Request::Sensitivities { model, quantity, numbers } => {
+            PageRequest::Values { model, quantity, points } => opened.values(&model, &quantity, &points),
+            PageRequest::Sensitivities { model, quantity, numbers } => {
                 opened.sensitivities(&model, &quantity, &numbers)
             }
-            Request::Csv { model, numbers } => {
+            PageRequest::Csv { model, numbers } => {
                 Ok(curves::csv(&opened.outcome(&model, opened.scene(&numbers)?)?.history).into())
             }
-            Request::Text { numbers } => {
+            PageRequest::Text { numbers } => {
                 let template = &opened.template;
                 Ok(template.text_with(&template.scene().name, &opened.named(&numbers)?)?.into())
             }
-            Request::Parse { field, text } => {
+            PageRequest::Parse { field, text } => {
                 let field = opened.field(&field)?;
                 let value = field.parse(&text)?;
                 field.check(value).map_err(|rejected| Error::Usage(rejected.to_string()))?;

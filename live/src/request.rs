@@ -9,7 +9,7 @@ pub type Numbers = BTreeMap<String, f64>;
 /// A request, as JSON: `{"do": "run", "model": "A", ...}`.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(tag = "do", rename_all = "snake_case")]
-pub enum Request {
+pub enum PageRequest {
     /// Takes a scene; all other requests are about it. The answer: its fields.
     Open {
         /// Content of the scene file.

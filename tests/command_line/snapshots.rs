@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-const COMMANDS: [&str; 20] = [
+const COMMANDS: [&str; 21] = [
     "reduced",
     "reference",
     "compare",
@@ -24,6 +24,7 @@ const COMMANDS: [&str; 20] = [
     "stress",
     "doctor",
     "fmu",
+    "live",
     "schema",
     "new",
     "completions",
