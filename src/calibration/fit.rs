@@ -1,7 +1,7 @@
 //! Parameters of a function from data, by least squares, and what the data can't tell of them.
 
 use crate::error::{Error, Result};
-use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
+use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt, TerminationReason};
 use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 use serde::Serialize;
@@ -73,14 +73,28 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>>> FitProblem<'_, F> {
         moved(LONG_STEP).zip(moved(-LONG_STEP)).is_none_or(is_left)
     }
 
+    /// The differences with parameter `k` changed by `step`.
+    fn moved(&self, k: usize, step: f64) -> Option<DVector<f64>> {
+        let mut there = self.at.clone();
+        there[k] += step;
+        self.of(&there)
+    }
+
     fn slopes(&self) -> Option<DMatrix<f64>> {
-        let moved = |k: usize, step: f64| {
-            let mut there = self.at.clone();
-            there[k] += step;
-            self.of(&there)
-        };
-        let column = |k| Some((moved(k, STEP)? - moved(k, -STEP)?) / (2.0 * STEP));
+        let column = |k| Some((self.moved(k, STEP)? - self.moved(k, -STEP)?) / (2.0 * STEP));
         Some(DMatrix::from_columns(&(0..self.at.len()).map(column).collect::<Option<Vec<_>>>()?))
+    }
+
+    /// Why there are no slopes; `stated` names a parameter with its value.
+    fn at_the_limit(&self, stated: impl Fn(usize, f64) -> String) -> Error {
+        let ends = |k: &usize| [STEP, -STEP].into_iter().any(|step| self.moved(*k, step).is_none());
+        let Some(k) = (0..self.at.len()).find(ends) else {
+            return undefined();
+        };
+        Error::Solver(format!(
+            "the fit comes to {}, and next to it the model has no result: the records do not identify the inputs with this model; take fewer inputs, or another model",
+            stated(k, self.at[k] * self.scales[k])
+        ))
     }
 }
 
@@ -106,9 +120,14 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>>> LeastSquaresProblem<f64, Dyn, Dyn> for F
     }
 }
 
+fn undefined() -> Error {
+    Error::Solver("the model has no result at the inputs that the fit tries".into())
+}
+
 /// Minimises the sum of the squares of `residuals` from `start` on (Levenberg and Marquardt, as in MINPACK); `scales` are the sizes of
 /// the parameters: a direction in which they are uncertain by half of these is unidentifiable. `covariance` gives that of the data from
-/// what the fit leaves and its slopes, block by block along the data (see [`independent`]).
+/// what the fit leaves and its slopes, block by block along the data (see [`independent`]). Messages show a parameter and its
+/// value as `stated`.
 ///
 /// # Errors
 /// [`Error::Solver`] if the residuals are not defined at the start, are too few for the parameters, or no minimum is found.
@@ -117,8 +136,8 @@ pub fn fit(
     scales: &[f64],
     residuals: impl Fn(&[f64]) -> Option<Vec<f64>>,
     covariance: impl Fn(&DVector<f64>, &DMatrix<f64>) -> Option<Vec<DMatrix<f64>>>,
+    stated: impl Fn(usize, f64) -> String,
 ) -> Result<Fitted> {
-    let undefined = || Error::Solver("the model has no result at the inputs that the fit tries".into());
     let first = residuals(start).ok_or_else(undefined)?;
     let largest = first.iter().fold(1.0_f64, |most, r| most.max(r.abs()));
     let far_off = DVector::from_element(first.len(), FAR * largest);
@@ -126,12 +145,22 @@ pub fn fit(
     let problem = FitProblem { residuals: &residuals, scales, at, far_off };
     let (problem, report) =
         LevenbergMarquardt::new().with_ftol(1e-12).with_xtol(1e-10).with_gtol(1e-12).minimize(problem);
-    if !report.termination.was_successful()
-        && !matches!(report.termination, levenberg_marquardt::TerminationReason::NoImprovementPossible(_))
-    {
-        return Err(Error::Solver(format!("the least squares found no minimum: {:?}", report.termination)));
+    match report.termination {
+        TerminationReason::ResidualsZero
+        | TerminationReason::Orthogonal
+        | TerminationReason::Converged { .. }
+        | TerminationReason::NoImprovementPossible(_) => {}
+        TerminationReason::User(_) => return Err(problem.at_the_limit(stated)),
+        TerminationReason::LostPatience => {
+            return Err(Error::Solver(format!(
+                "the fit finds no minimum in {} trials: take fewer inputs, or values in the scene that are nearer to the records",
+                report.number_of_evaluations
+            )));
+        }
+        other => return Err(Error::Solver(format!("the fit finds no minimum: {other:?}"))),
     }
-    let (left, slopes) = problem.of(&problem.at).zip(problem.slopes()).ok_or_else(undefined)?;
+    let (left, slopes) =
+        problem.of(&problem.at).zip(problem.slopes()).ok_or_else(|| problem.at_the_limit(stated))?;
     let (count, unknowns) = (left.len(), start.len());
     if count <= unknowns {
         return Err(Error::Solver(format!("{count} data don't determine {unknowns} inputs")));
@@ -237,6 +266,10 @@ mod tests {
         (0..200).map(|k| 0.01 * f64::from(k)).map(|t| (t, model(&TRUTH, t) + noise())).collect()
     }
 
+    fn number(k: usize, value: f64) -> String {
+        format!("input {k} = {value:.2}")
+    }
+
     fn model(p: &[f64], t: f64) -> f64 {
         p[0] * (-t * p[2]).exp() * (p[1] * t).sin()
     }
@@ -247,7 +280,8 @@ mod tests {
         for seed in 0..200 {
             let data = noisy(seed);
             let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) - y).collect());
-            let found = fit(&[1.8, 29.8, 0.5], &[2.0, 30.0, 0.5], residuals, independent).expect("a minimum");
+            let found =
+                fit(&[1.8, 29.8, 0.5], &[2.0, 30.0, 0.5], residuals, independent, number).expect("a minimum");
             assert!(found.unidentifiable.is_empty(), "{found:?}");
             assert!((found.scatter / 0.05 - 1.0).abs() < 0.25, "{found:?}");
             for (k, inside) in inside.iter_mut().enumerate() {
@@ -264,8 +298,8 @@ mod tests {
         let data = noisy(7);
         let product = |p: &[f64], t: f64| model(&[p[0] * p[3], p[1], p[2]], t);
         let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
-        let found =
-            fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
+        let found = fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent, number)
+            .expect("a minimum");
         assert_eq!(found.unidentifiable, [[0, 3]], "{found:?}");
         assert_eq!(
             found.standard_deviations.iter().map(Option::is_some).collect::<Vec<_>>(),
@@ -274,8 +308,8 @@ mod tests {
         assert!((found.values[0] * found.values[3] - 2.0).abs() < 0.1, "{found:?}");
         // what does not act at all is not told either
         let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) - y).collect());
-        let found =
-            fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
+        let found = fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent, number)
+            .expect("a minimum");
         assert_eq!(found.unidentifiable, [[3]], "{found:?}");
     }
 
@@ -285,7 +319,7 @@ mod tests {
         let angle = |p: &[f64], t: f64| (p[0] / p[1].powi(2) * t).sin();
         let times = || (0..200).map(|k| 0.01 * f64::from(k));
         let residuals = |p: &[f64]| Some(times().map(|t| angle(p, t) - angle(&[1.4, 1.05], t)).collect());
-        let found = fit(&[1.5, 1.0], &[1.5, 1.0], residuals, independent).expect("a minimum");
+        let found = fit(&[1.5, 1.0], &[1.5, 1.0], residuals, independent, number).expect("a minimum");
         assert_eq!(found.unidentifiable, [[0, 1]], "{found:?}");
     }
 
@@ -298,7 +332,7 @@ mod tests {
             let data: Vec<(f64, f64)> = noisy(7).into_iter().map(louder).collect();
             let product = |p: &[f64], t: f64| model(&[p[0] * (0.95 + 0.05 * p[3]), p[1], p[2]], t);
             let residuals = |p: &[f64]| Some(data.iter().map(|(t, y)| product(p, *t) - y).collect());
-            let found = fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent)
+            let found = fit(&[1.8, 29.8, 0.5, 1.1], &[2.0, 30.0, 0.5, 1.0], residuals, independent, number)
                 .expect("a minimum");
             assert_eq!(found.unidentifiable, [[0, 3]], "{loud}: {found:?}");
         }
@@ -311,14 +345,25 @@ mod tests {
         let rounding = |p: f64, t: f64| 2e-4 * (1e7 * p + 1e3 * t).sin();
         let residuals =
             |p: &[f64]| Some(data.iter().map(|(t, y)| model(p, *t) + rounding(p[3], *t) - y).collect());
-        let found =
-            fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent).expect("a minimum");
+        let found = fit(&[1.8, 29.8, 0.5, 1.0], &[2.0, 30.0, 0.5, 1.0], residuals, independent, number)
+            .expect("a minimum");
         assert_eq!(found.unidentifiable, [[3]], "{found:?}");
+    }
+
+    /// As Poisson's ratio at 0.5: the records want more than the model takes.
+    #[test]
+    fn a_fit_that_leaves_the_model_names_the_input() {
+        let data = noisy(7);
+        let residuals =
+            |p: &[f64]| (p[0] < 1.9).then(|| data.iter().map(|(t, y)| model(p, *t) - y).collect());
+        let error = fit(&[1.8, 29.8, 0.5], &[2.0, 30.0, 0.5], residuals, independent, number).unwrap_err();
+        let said = error.to_string();
+        assert!(said.contains("comes to input 0 = 1.90"), "{said}");
     }
 
     #[test]
     fn too_few_data_are_an_error() {
         let few = |p: &[f64]| Some(vec![p[0] - 1.0]);
-        assert!(matches!(fit(&[2.0, 1.0], &[1.0, 1.0], few, independent), Err(Error::Solver(_))));
+        assert!(matches!(fit(&[2.0, 1.0], &[1.0, 1.0], few, independent, number), Err(Error::Solver(_))));
     }
 }

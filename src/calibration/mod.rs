@@ -4,6 +4,7 @@ pub mod fit;
 mod residuals;
 
 use crate::error::{Error, Result};
+use crate::format::quantity;
 use crate::kinds;
 use crate::measured::{AlignedRecord, ContactEnds, Filtered, Finding, FindingKind, Record, Speed, align_all};
 use crate::result::{CUT, SCHEMA_VERSION};
@@ -117,7 +118,11 @@ pub fn calibrate(
     let shifts = |scale: f64| std::iter::repeat_n(scale, aligned.len());
     let first: Vec<f64> = nominal.iter().copied().chain(shifts(0.0)).collect();
     let scales: Vec<f64> = nominal.iter().map(|x| x.abs()).chain(shifts(1.0 / bandwidth)).collect();
-    let found = fit(&first, &scales, differences, |left, slopes| signals.covariance(left, slopes))?;
+    let covariance = |left: &_, slopes: &_| signals.covariance(left, slopes);
+    let stated = |k: usize, value: f64| {
+        format!("{} = {}", name(&fields, k), quantity(value, fields.get(k).map_or("s", Field::unit), 4))
+    };
+    let found = fit(&first, &scales, differences, covariance, stated)?;
     let misfit = [root_mean_square(&first), root_mean_square(&found.values)];
     Ok(Calibration {
         records: used,
@@ -135,6 +140,12 @@ fn nominal(template: &Template, field: &Field) -> Result<f64> {
     if value == 0.0 { Err(refused("it is 0, which has no size to look about")) } else { Ok(value) }
 }
 
+/// Parameter `k` of the fit: one of `fields`, then the times of the records.
+fn name(fields: &[Field], k: usize) -> String {
+    let time = || format!("the time of record {}", k - fields.len() + 1);
+    fields.get(k).map_or_else(time, |field| format!("`{}`", field.path()))
+}
+
 fn document(
     template: &Template,
     (fields, nominal): (&[Field], &[f64]),
@@ -143,16 +154,11 @@ fn document(
     (samples, misfit): (usize, [f64; 2]),
 ) -> Calibration {
     let count = fields.len();
-    let name = |k: &usize| {
-        fields
-            .get(*k)
-            .map_or_else(|| format!("the time of record {}", k - count + 1), |f| format!("`{}`", f.path()))
-    };
     let sentence = |direction: &Vec<usize>| match &direction[..] {
-        [one] => format!("not identifiable from the records: {}", name(one)),
+        [one] => format!("not identifiable from the records: {}", name(fields, *one)),
         several => format!(
             "not identifiable from the records: {} (other combinations fit as well)",
-            several.iter().map(name).collect::<Vec<_>>().join(" and ")
+            several.iter().map(|k| name(fields, *k)).collect::<Vec<_>>().join(" and ")
         ),
     };
     let input = |k: usize| Calibrated {

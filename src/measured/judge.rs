@@ -26,6 +26,8 @@ const DELAY_EXPLAINS: f64 = 0.5;
 const HELD: f64 = 0.5;
 const ROUGH_STEPS: f64 = 1.5;
 const ROUGH_SAMPLES: usize = 30;
+/// Roughness over the span of a signal up to which it is rounding, as of values in single precision, and no noise of an instrument.
+const ROUNDED: f64 = f32::EPSILON as f64;
 
 /// Half widths of the 95 % interval by which an excess of energy is hardly chance, and by which it is none.
 const EXCESS: f64 = 1.5;
@@ -263,7 +265,9 @@ impl Alignment<'_> {
         let level = seen.flight.level;
         let (large, other) =
             if level.abs() > (level + step).abs() { (before, after) } else { (after, before) };
-        large < HELD * other && other > ROUGH_STEPS * resolution(&channel.values)
+        // a computed signal has values next to zero, whose smallest distance is far below its rounding
+        let rounding = (ROUGH_STEPS * resolution(&channel.values)).max(ROUNDED * self.span(quantity));
+        large < HELD * other && other > rounding
     }
 
     /// Whether the drift of a velocity is large and no chance.

@@ -17,6 +17,8 @@ struct Largest<'c> {
 enum Finding<'c> {
     Agrees(Largest<'c>),
     Differs(Largest<'c>),
+    /// The model has results, but the reference has none of the columns' values.
+    NoReference,
     NoResult,
 }
 
@@ -31,6 +33,9 @@ impl Finding<'_> {
             Some(Largest { column, off })
         });
         match offs.max_by(|a, b| a.off.abs().total_cmp(&b.off.abs())) {
+            None if columns.iter().any(|column| model.summary.value(column.quantity).is_some()) => {
+                Finding::NoReference
+            }
             None => Finding::NoResult,
             Some(largest) if largest.off.abs() <= SMALL => Finding::Agrees(largest),
             Some(largest) => Finding::Differs(largest),
@@ -41,7 +46,7 @@ impl Finding<'_> {
     fn order(&self) -> f64 {
         match self {
             Finding::Agrees(largest) | Finding::Differs(largest) => largest.off.abs(),
-            Finding::NoResult => f64::INFINITY,
+            Finding::NoReference | Finding::NoResult => f64::INFINITY,
         }
     }
 }
@@ -59,6 +64,9 @@ pub(crate) fn conclusion(columns: &[SummaryColumn], comparison: &SceneComparison
 
 fn sentence(model: &str, finding: &Finding) -> String {
     match finding {
+        Finding::NoReference => {
+            format!("Model {model} is not compared: the reference has no value for its main quantities.")
+        }
         Finding::NoResult => format!("Model {model} gave no result."),
         Finding::Agrees(Largest { column, off }) if column.is_angle => {
             format!(

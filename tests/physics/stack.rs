@@ -122,6 +122,28 @@ fn a_small_resistance_is_none() {
     }
 }
 
+/// What a resistance changes is proportional to it; below what rounding leaves of it, it changes nothing.
+#[test]
+fn small_resistances_go_to_their_limit() {
+    for (gap, buffer_capacitance) in [(0.0, None), (5e-6, None), (5e-6, Some(5e-6))] {
+        let behind = |resistance: f64| {
+            let (_, result) = run(stack(gap, Some(Supply { resistance, buffer_capacitance })));
+            assert!(result.energy_residual < 1e-7, "{resistance} Ohm: {}", result.energy_residual);
+            result.velocity[1]
+        };
+        let limit = match buffer_capacitance {
+            None => run(stack(gap, None)).1.velocity[1],
+            Some(_) => behind(1e-15),
+        };
+        for power in 3..=12 {
+            let resistance = 10.0_f64.powi(-power);
+            let off = behind(resistance) / limit - 1.0;
+            println!("gap {gap:e} m, buffer {buffer_capacitance:?}, {resistance:e} Ohm: {off:.1e}");
+            assert!(off.abs() < 0.3 * resistance + 1e-7, "{resistance} Ohm: {off}");
+        }
+    }
+}
+
 /// The whole stack moves with stroke c/L when the wave has passed it once: that is the measure of its energy.
 #[test]
 fn measure_of_a_stack_is_half_of_force_times_stroke() {

@@ -139,3 +139,16 @@ fn the_answer_is_the_terminals_and_no_better_than_the_discrepancies() {
     // what nothing computed backs is not said
     assert!(!page.contains("assumptions hold"));
 }
+
+/// A reference of displacements alone has none of the columns: the models have their results for all that.
+#[test]
+fn a_reference_without_values_is_no_model_without_a_result() {
+    let mut data = Data::new();
+    data.reference.summary.quantities = data.reference.summary.quantities.clone().cut();
+    let printed = terminal(&data.report(), Width::Wide);
+    for model in ["A", "B"] {
+        let said =
+            format!("Model {model} is not compared: the reference has no value for its main quantities.");
+        assert!(printed.contains(&said), "{printed}");
+    }
+}

@@ -12,6 +12,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Modes of the rod that move by themselves.
 pub const MODES: usize = 20;
+/// Time constant of the charging, in radians of the rod's quickest mode, below which it changes nothing: all differs from the limit by
+/// less than that. Much shorter ones leave nothing of the damping by the resistor but rounding.
+const AT_ONCE: f64 = 1e-6;
 
 /// What supplies a stack: a charged buffer behind a resistor (Fig. 2), switched on at once.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -86,6 +89,16 @@ impl Stack {
     /// Time in s in which the free stack charges per resistance of its supply, the capacitance of stack and buffer in series, F.
     pub fn charging_time_per_resistance(&self) -> f64 {
         self.capacitance / (1.0 + self.capacitance * self.drive.map_or(0.0, |supply| supply.elastance()))
+    }
+
+    /// Supply with a resistance that matters: `None` where the stack charges so quickly that the source is as good as ideal. A buffer of
+    /// finite capacitance is none; behind a smaller resistance it does what it does behind the least one that matters.
+    pub fn resistive_drive(&self) -> Option<Supply> {
+        let drive = self.drive?;
+        let least = AT_ONCE / (self.mode(MODES).omega * self.charging_time_per_resistance());
+        let resistance = drive.resistance.max(least);
+        (drive.resistance >= least || drive.buffer_capacitance.is_some())
+            .then_some(Supply { resistance, ..drive })
     }
 
     /// Mass in kg.

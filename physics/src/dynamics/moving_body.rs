@@ -110,7 +110,7 @@ impl MovingBody {
     /// # Errors
     /// [`Error::Solver`] if it does not reach the plate, and as [`Circuit::new`].
     fn stack(stack: &Stack, material: &Material) -> Result<Self> {
-        let supply = stack.drive.map(|supply| Circuit::new(stack, supply)).transpose()?;
+        let supply = stack.resistive_drive().map(|supply| Circuit::new(stack, supply)).transpose()?;
         let rest = Self {
             oscillators: Vec::new(),
             tip: Vec::new(),
