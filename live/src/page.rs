@@ -59,8 +59,8 @@ impl LivePage {
                 opened.course(&model, &numbers, (end, samples))
             }
             PageRequest::Values { model, quantity, points } => opened.values(&model, &quantity, &points),
-            PageRequest::Sensitivities { model, quantity, numbers } => {
-                opened.sensitivities(&model, &quantity, &numbers)
+            PageRequest::Sensitivity { model, quantity, field, numbers } => {
+                opened.sensitivity(&model, &quantity, &field, &numbers)
             }
             PageRequest::Csv { model, numbers } => {
                 Ok(curves::csv(&opened.outcome(&model, opened.scene(&numbers)?)?.history).into())
@@ -71,10 +71,9 @@ impl LivePage {
             }
             PageRequest::Parse { field, text } => {
                 let field = opened.field(&field)?;
-                let value = field.parse(&text)?;
-                field.check(value).map_err(|rejected| Error::Usage(rejected.to_string()))?;
-                Ok(value.into())
+                checked(field, field.parse(&text)?)
             }
+            PageRequest::Check { field, value } => checked(opened.field(&field)?, value),
         }
     }
 }
@@ -187,25 +186,29 @@ impl Opened {
         Ok(points.iter().map(of).collect())
     }
 
-    fn sensitivities(&self, model: &str, quantity: &str, numbers: &Numbers) -> Result<Value> {
-        let of = |numbers: &Numbers| self.result(model, numbers)?.1.value(quantity);
-        let here = of(numbers);
-        let of_field = |(path, field): (&String, &Field)| {
-            let value = numbers.get(path).copied().or_else(|| self.template.number(field))?;
-            let here = here.filter(|here| *here != 0.0)?;
-            if field.is_count() || value == 0.0 || path.starts_with("reduced.") {
-                return None;
-            }
-            let at = |factor: f64| {
-                let mut moved = numbers.clone();
-                moved.insert(path.clone(), value * factor);
-                of(&moved)
-            };
-            let change = (at(1.0 + STEP)? - at(1.0 - STEP)?) / here.abs();
-            Some((path.clone(), json!(change / (2.0 * STEP))))
+    fn sensitivity(&self, model: &str, quantity: &str, path: &str, numbers: &Numbers) -> Result<Value> {
+        let field = self.field(path)?;
+        let value = numbers.get(path).copied().or_else(|| self.template.number(field));
+        let Some(value) = value.filter(|value| *value != 0.0 && !field.is_count()) else {
+            return Ok(Value::Null);
         };
-        Ok(Value::Object(self.fields.iter().filter_map(of_field).collect()))
+        let at = |factor: f64| {
+            let mut moved = numbers.clone();
+            moved.insert(path.to_owned(), value * factor);
+            self.result(model, &moved)?.1.value(quantity)
+        };
+        let change = at(1.0 - STEP).zip(at(1.0 + STEP)).map(|(below, above)| {
+            let middle = 0.5 * (below.abs() + above.abs());
+            (above - below) / (2.0 * STEP * middle)
+        });
+        Ok(json!(change.filter(|change| change.is_finite())))
     }
+}
+
+/// `value`, if it may stand in `field`.
+fn checked(field: &Field, value: f64) -> Result<Value> {
+    field.check(value).map_err(|rejected| Error::Usage(rejected.to_string()))?;
+    Ok(value.into())
 }
 
 #[cfg(test)]
@@ -269,12 +272,10 @@ mod tests {
 
     #[test]
     fn a_sensitivity_is_the_exponent_of_a_power_law() {
-        // without friction and yield nothing has a scale of stress: all moduli together change times alone
         let mut page = opened("scaled-plate-r6.35");
-        let request = |quantity: &str| json!({"do": "sensitivities", "model": "B", "quantity": quantity, "numbers": {}});
-        let found = ask(&mut page, request("first_frequency"));
         for (field, exponent) in [("plate.thickness", 1.0), ("plate.radius", -2.0), ("outer.speed", 0.0)] {
-            let value = found["ok"][field].as_f64().expect(field);
+            let request = json!({"do": "sensitivity", "model": "B", "quantity": "first_frequency", "field": field, "numbers": {}});
+            let value = ask(&mut page, request)["ok"].as_f64().expect(field);
             assert!((value - exponent).abs() < 1e-4, "{field}: {value}");
         }
     }

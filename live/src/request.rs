@@ -51,12 +51,14 @@ pub enum PageRequest {
         /// What differs from the scene, per run.
         points: Vec<Numbers>,
     },
-    /// How a quantity depends on each field. The answer: by field, percent that it changes by for a percent of the field.
-    Sensitivities {
+    /// How a quantity depends on a field. The answer: percent that it changes by for a percent of the field; null where that is not known.
+    Sensitivity {
         /// A, B or C.
         model: String,
         /// Name of the quantity.
         quantity: String,
+        /// Name of the field.
+        field: String,
         /// What differs from the scene.
         numbers: Numbers,
     },
@@ -71,6 +73,13 @@ pub enum PageRequest {
     Text {
         /// What differs from the scene.
         numbers: Numbers,
+    },
+    /// Whether a number, in SI, may stand in a field. The answer: it.
+    Check {
+        /// Name of the field.
+        field: String,
+        /// The number.
+        value: f64,
     },
     /// Reads a number with a unit. The answer: it in SI.
     Parse {

@@ -24,14 +24,25 @@ pub struct Arguments {
 
 /// Writes the page, with the stored references of its scenes.
 pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
-    let mut scenes = Vec::new();
+    let (mut scenes, mut refused) = (Vec::new(), None);
     for (file, scene) in compare_inputs::scenes(&arguments.scenes)? {
         let stored = finest(context, &file, &scene);
+        match of_scene(context, &file, &scene, stored.as_ref()) {
+            Ok(of_scene) => scenes.push(of_scene),
+            // the others still have a page
+            Err(error) => {
+                context.note(format_args!("not in the page: {error}"));
+                refused.get_or_insert(error);
+                continue;
+            }
+        }
         if stored.is_none() {
             context
                 .note(format_args!("{}: no stored reference, the page shows the models alone", scene.name));
         }
-        scenes.push(of_scene(context, &file, &scene, stored.as_ref())?);
+    }
+    if let (true, Some(error)) = (scenes.is_empty(), refused) {
+        return Err(error);
     }
     let page = live_page(&scenes, &validated_scenes::known(context, &[]))?;
     write_file(&arguments.out, page.as_bytes())?;

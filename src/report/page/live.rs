@@ -67,8 +67,8 @@ impl LiveScene {
         let kind = kinds::of(scene);
         if !kind.mesh_requests(scene).is_empty() {
             return Err(Error::Usage(format!(
-                "scene `{}` has a body from a mesh, which a live page can't make: `impactcheck reduced {0} --page FILE` writes a page \
-                 of its result",
+                "scene `{}`: its model C needs a mesh of a solid (a body from a mesh, or an impact off-centre or at an angle), which a live \
+                 page can't make: `impactcheck reduced {0} --page FILE` writes a page of its result",
                 scene.name
             )));
         }

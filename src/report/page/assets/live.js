@@ -39,7 +39,8 @@
 
     start() {
       this.worker = new Worker(source);
-      this.worker.onmessage = ({ data }) => this.answered(data);
+      const { worker } = this;
+      worker.onmessage = ({ data }) => { if (worker === this.worker) this.answered(data); };
       this.worker.postMessage({ module });
     }
 
@@ -47,6 +48,11 @@
     open(request) {
       this.opening = request;
       this.waiting.clear();
+      if (this.running) {
+        this.worker.terminate();
+        Object.assign(this, { running: null, skip: false });
+        this.start();
+      }
       return new Promise((done) => this.ask("open", request, done));
     }
 
@@ -55,8 +61,9 @@
       if (!this.running) this.next();
     }
 
-    cancel(key) {
-      this.waiting.delete(key);
+    // Forgets waiting requests whose key begins so.
+    cancel(...begins) {
+      for (const key of this.waiting.keys()) if (begins.some((begin) => key.startsWith(begin))) this.waiting.delete(key);
     }
 
     next() {
@@ -97,6 +104,9 @@
     "N*s": [["mN*s", "mN s", 1e3, 1], ["N*s", "N s", 1, Infinity]],
     kg: [["mg", "mg", 1e6, 1e-3], ["g", "g", 1e3, 1], ["kg", "kg", 1, Infinity]],
     rad: [["deg", "°", 180 / Math.PI, Infinity]],
+    F: [["uF", "µF", 1e6, 1e-3], ["F", "F", 1, Infinity]],
+    "m^2": [["mm^2", "mm²", 1e6, 1], ["m^2", "m²", 1, Infinity]],
+    "Pa*s": [["mPa*s", "mPa s", 1e3, 0.1], ["Pa*s", "Pa s", 1, Infinity]],
     "1": [["", "", 1, Infinity]],
   };
   const prefix = (unit, size) => {
@@ -184,7 +194,7 @@
       const written = box.value.trim();
       const unit = prefix(field.unit, value(field) || field.value).written;
       const asked = /^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(written) ? `${written}${unit ? ` ${unit}` : ""}` : written;
-      aside.ask(`parse ${field.path}`, { do: "parse", field: field.path, text: asked }, (answer) => {
+      quick.ask(`parse ${field.path}`, { do: "parse", field: field.path, text: asked }, (answer) => {
         refuse(answer.error ?? "");
         if (answer.ok != null) set(field, answer.ok);
       });
@@ -193,6 +203,7 @@
       refuse("");
       set(field, at(field, slider.value / 1000), true);
     });
+    slider.addEventListener("change", () => show(field));
     lock.addEventListener("click", () => {
       const locked = !state.locks.has(field.path);
       locked ? state.locks.add(field.path) : state.locks.delete(field.path);
@@ -215,11 +226,18 @@
     state.numbers[field.path] = number;
     show(field, dragged);
     if (state.locks.has(field.path) && Number.isFinite(factor) && factor > 0) {
-      for (const other of state.fields) {
-        if (other === field || !state.locks.has(other.path) || other.count) continue;
-        state.numbers[other.path] = Math.min(Math.max(+(value(other) * factor).toPrecision(12), other.low), other.high);
-        show(other);
+      const others = state.fields.filter((other) => other !== field && state.locks.has(other.path) && !other.count);
+      const moved = others.map((other) => +(value(other) * factor).toPrecision(14));
+      // the ratios stay: at a bound none of them goes on
+      if (others.some((other, k) => moved[k] < other.low || moved[k] > other.high)) {
+        state.numbers[field.path] = before;
+        show(field);
+        return;
       }
+      others.forEach((other, k) => {
+        state.numbers[other.path] = moved[k];
+        show(other);
+      });
     }
     update();
   }
@@ -229,7 +247,10 @@
     clearTimeout(rest);
     const since = performance.now();
     mapRun += 1;
-    aside.cancel("map");
+    failed("");
+    aside.cancel("map", "sensitivity");
+    for (const models of [quick, slow]) models.cancel("run");
+    byId("status").textContent = "Computing …";
     for (const model of state.models) request(model, "course", since);
     rest = setTimeout(settle, REST);
   }
@@ -242,17 +263,17 @@
   }
 
   function request(model, how, since) {
-    const numbers = changed();
-    workerOf(model).ask(`${how} ${model}`, { do: how, model, numbers, end: state.end || null, samples: SAMPLES }, (answer) => {
+    const numbers = changed(), of = JSON.stringify(numbers), end = state.end || null;
+    workerOf(model).ask(`${how} ${model}`, { do: how, model, numbers, end, samples: SAMPLES }, (answer) => {
       if (answer.error) {
         delete state.results[model];
-        state.estimated[model] = { error: answer.error };
+        state.estimated[model] = { error: answer.error, of };
       } else {
         state.results[model] = answer.ok;
-        state.results[model].of = JSON.stringify(numbers);
+        Object.assign(answer.ok, { of, sampled: end });
         if (how === "run") state.estimated[model] = answer.ok;
         else if (state.estimated[model]?.error) delete state.estimated[model];
-        follow(answer.ok.curves.end);
+        follow();
       }
       cancelAnimationFrame(frame);
       frame = requestAnimationFrame(() => {
@@ -262,16 +283,26 @@
     });
   }
 
-  // the time axis follows impacts that become much longer or shorter
-  function follow(end) {
-    if (state.end && end <= 1.05 * state.end && end >= 0.4 * state.end) return;
-    state.end = 1.02 * end;
-    for (const model of state.models) request(model, "course");
+  // The time axis follows the longest impact of all models, once all have answered for the same numbers; curves of another axis
+  // are requested again.
+  function follow() {
+    const now = JSON.stringify(changed());
+    const current = state.models.filter((model) => [state.results[model], state.estimated[model]].some((one) => one?.of === now));
+    if (current.length < state.models.length && state.end) return;
+    const end = Math.max(...state.models.map((model) => state.results[model]?.curves.end ?? 0));
+    if (end > 0 && !(state.end && end <= 1.05 * state.end && end >= 0.4 * state.end)) state.end = 1.02 * end;
+    for (const model of state.models) {
+      const one = state.results[model];
+      if (one && one.sampled !== state.end && one.asked !== state.end) {
+        one.asked = state.end;
+        request(model, one.summary ? "run" : "course");
+      }
+    }
   }
 
   function draw() {
-    if (!state.end) return;
-    curves.draw(times(), state.results);
+    const drawn = Object.fromEntries(Object.entries(state.results).filter(([, { sampled }]) => sampled === state.end));
+    if (state.end) curves.draw(times(), drawn);
     table();
     notes();
     places();
@@ -287,6 +318,7 @@
     for (const model of state.models) heading(model);
     if (reference) heading("Reference of the original scene", "Value and 95 % band of the stored finite-element reference of the original scene");
     if (predicted) heading("A reference would find (95 %)", "Interval in which a finite-element reference of the present scene lies with 95 % probability");
+    const now = JSON.stringify(changed());
     const body = make("tbody");
     for (const quantity of state.scene.quantities) {
       const values = state.models.map((model) => state.results[model]?.values[quantity.name]);
@@ -298,7 +330,11 @@
         line.append(td);
         return td;
       };
-      values.forEach((v, k) => Object.assign(cell(quantity.count && v != null ? String(v) : withUnit(v, quantity.unit, 5, size), v ?? "").dataset, { model: state.models[k], quantity: quantity.name }));
+      const own = (td, model) => {
+        td.className = state.results[model]?.of === now ? "" : "old";
+        return td;
+      };
+      values.forEach((v, k) => Object.assign(own(cell(quantity.count && v != null ? String(v) : withUnit(v, quantity.unit, 5, size), v ?? ""), state.models[k]).dataset, { model: state.models[k], quantity: quantity.name }));
       if (reference) {
         const [v, band] = reference[quantity.name] ?? [];
         cell(v == null ? "–" : `${withUnit(v, quantity.unit, 5, size)}${band == null ? "" : ` ± ${withUnit(band, quantity.unit, 2, size)}`}`);
@@ -316,6 +352,13 @@
       : typeof intervals === "string" ? `There is no interval of what a reference would find: ${intervals}.` : "";
   }
 
+  // the quantity that stands for a result: the efficiency, if it exists
+  const leading = () => {
+    const has = ({ name }) => state.models.some((model) => state.results[model]?.values[name] != null);
+    const { quantities } = state.scene;
+    return quantities.find((quantity) => quantity.name === "efficiency" && has(quantity)) ?? quantities.find(has) ?? quantities[0];
+  };
+
   function notes() {
     const said = new Map();
     for (const model of state.models) {
@@ -331,10 +374,13 @@
     }
     if (estimated.length) lines.push(make("li", { textContent: `Estimated error by truncated modes: ${estimated.map(([model, error]) => `${model} ${digits(100 * error, 2)} %`).join(", ")}.` }));
     byId("warnings").replaceChildren(...lines);
-    const first = state.scene.quantities.find(({ name }) => name === "efficiency") ?? state.scene.quantities[0];
+    const isOld = state.models.some((model) => state.estimated[model]?.of !== JSON.stringify(changed()));
+    for (const id of ["warnings", "validated"]) byId(id).classList.toggle("old", isOld);
+    const first = leading();
     const current = state.models.filter((model) => state.estimated[model]?.of === JSON.stringify(changed()));
     if (current.length === state.models.length) {
-      byId("status").textContent = `${first.label}: ${state.models.map((model) => `${model} ${withUnit(state.results[model]?.values[first.name], first.unit, 4)}`).join(", ")}${said.size ? `; ${said.size} warning${said.size > 1 ? "s" : ""}` : ""}`;
+      const of = (model) => (state.estimated[model].error ? `${model} no result` : `${model} ${withUnit(state.results[model]?.values[first.name], first.unit, 4)}`);
+      byId("status").textContent = `${first.label}: ${state.models.map(of).join(", ")}${said.size ? `; ${said.size} warning${said.size > 1 ? "s" : ""}` : ""}`;
     }
   }
 
@@ -349,21 +395,20 @@
     byId("validated").innerHTML = views.join("");
   }
 
-  // sensitivities beside the sliders
+  // sensitivities at the sliders, one field after the other
   function sensitivities() {
     const model = state.models.includes("B") ? "B" : state.models[0];
-    const quantity = state.scene.quantities.find(({ name }) => name === "efficiency") ?? state.scene.quantities[0];
+    const quantity = leading();
     // a launch of a seat takes too long for two runs per number
     if (state.scene.mesh) return;
-    aside.ask("sensitivities", { do: "sensitivities", model, quantity: quantity.name, numbers: changed() }, (answer) => {
-      for (const field of state.fields) {
-        const change = answer.ok?.[field.path];
+    for (const field of state.fields) {
+      aside.ask(`sensitivity ${field.path}`, { do: "sensitivity", model, quantity: quantity.name, field: field.path, numbers: changed() }, ({ ok: change }) => {
         const bar = make("span", { className: change < 0 ? "bar less" : "bar" });
         bar.style.width = `${Math.min(3 * Math.abs(change ?? 0), 3)}rem`;
         field.depends.replaceChildren(...(change == null ? [] : [bar, `${change > 0 ? "+" : ""}${digits(change, 2)}`]));
         field.depends.title = change == null ? "" : `${quantity.label} changes by ${digits(change, 2)} % for one percent of ${field.path}`;
-      }
-    });
+      });
+    }
   }
 
   // the map, coarse cells first
@@ -404,11 +449,11 @@
         done += cells.length;
         let best = -Infinity;
         found.values.forEach((line, row) => line.forEach((v, column) => {
-          if (known[row][column] && v > best) [best, found.best] = [v, [column, row]];
+          if (known[row][column] && v != null && v > best) [best, found.best] = [v, [column, row]];
         }));
-        const where = found.best && `${withUnit(centre(fx, found.best[0]), fx.unit, 3)} and ${withUnit(centre(fy, found.best[1]), fy.unit, 3)}`;
+        const where = !found.best ? "" : `${withUnit(centre(fx, found.best[0]), fx.unit, 3)} and ${withUnit(centre(fy, found.best[1]), fy.unit, 3)}`;
         const label = quantity.label[0].toUpperCase() + quantity.label.slice(1);
-        const summary = `${label} of model ${model} over ${fx.path} and ${fy.path}: ${done} of ${order.length} impacts. Cross: the largest value, ${withUnit(best, quantity.unit, 3)} at ${where}. Ring: the present numbers.`;
+        const summary = `${label} of model ${model} over ${fx.path} and ${fy.path}: ${done} of ${order.length} impacts. ${where ? `Cross: the largest value, ${withUnit(best, quantity.unit, 3)} at ${where}.` : "No impact has a result."} Ring: the present numbers.`;
         found.whole = done === order.length;
         const line = found.whole && found.ratios.flat().some((v) => v != null) ? " Line: the contact lasts half a period of the plate's first mode, near which the paper finds the optimum." : "";
         drawMap(byId("map"), found);
@@ -431,10 +476,15 @@
     history.replaceState(null, "", `#${parts}`);
   }
 
+  let opening = 0;
   async function open(name, wanted = new URLSearchParams()) {
-    state.scene = page.scenes.find((scene) => scene.name === name) ?? page.scenes[0];
-    const { scene } = state;
-    failed("");
+    const turn = opening += 1;
+    clearTimeout(rest);
+    mapRun += 1;
+    const scene = page.scenes.find((one) => one.name === name) ?? page.scenes[0];
+    byId("fields").replaceChildren();
+    const problems = name && scene.name !== name ? [`There is no scene ${name} in this page.`] : [];
+    failed(problems.join(" "));
     byId("title").textContent = scene.name;
     byId("description").textContent = scene.description;
     byId("scene").value = scene.name;
@@ -442,17 +492,23 @@
     byId("status").textContent = scene.mesh ? "Computing the modes of the seat: some 10 s, once …" : "Opening the scene …";
     const mesh = scene.mesh ? new TextDecoder().decode(await unpacked(scene.mesh)) : null;
     const request = { do: "open", scene: scene.scene, mesh, tolerance: scene.tolerance };
+    if (turn !== opening) return;
     const [answer] = await Promise.all([quick, slow, aside].map((models) => models.open(request)));
+    if (turn !== opening) return;
     if (answer.error) {
       failed(answer.error);
       return;
     }
-    Object.assign(state, { ...answer.ok, numbers: {}, results: {}, estimated: {}, end: 0, locks: new Set(), hidden: new Set((wanted.get("hide") ?? "").split(",").filter(Boolean)) });
+    Object.assign(state, { scene, map: null, ...answer.ok, numbers: {}, results: {}, estimated: {}, end: 0, locks: new Set(), hidden: new Set((wanted.get("hide") ?? "").split(",").filter(Boolean)) });
     const reference = scene.reference;
     if (reference) state.end = reference.times[reference.times.length - 1];
     for (const field of state.fields) {
       const number = wanted.get(field.path);
-      if (number != null && Number.isFinite(Number(number))) state.numbers[field.path] = Number(number);
+      if (!number) continue;
+      const checked = await new Promise((done) => quick.ask("check", { do: "check", field: field.path, value: Number(number) }, done));
+      if (turn !== opening) return;
+      if (checked.error) problems.push(checked.error);
+      else state.numbers[field.path] = Number(number);
     }
     state.locks = new Set((wanted.get("locks") ?? "").split(",").filter((path) => state.fields.some((field) => field.path === path)));
     build();
@@ -466,8 +522,10 @@
     options("map-y", numeric, like(my, "plate.thickness", "outer.radius", "radius"));
     options("map-quantity", scene.quantities.filter((quantity) => !quantity.count).map(({ name: n, label }) => [n, label]), mq ?? "efficiency");
     options("map-model", state.models.map((model) => [model, model]), mm ?? (state.models.includes("B") ? "B" : state.models[0]));
+    address();
     byId("downloads").replaceChildren("Download curves (CSV, SI): ", ...state.models.map(download));
     update();
+    failed(problems.join(" "));
   }
 
   function sources() {
@@ -498,35 +556,46 @@
     return button;
   }
 
+  const names = new Map(["share", "toml"].map((id) => [byId(id), byId(id).textContent]));
   async function copy(button, content) {
-    const name = button.textContent;
     try {
       await navigator.clipboard.writeText(content);
       button.textContent = "Copied";
     } catch {
-      prompt("Copy this:", content);
+      // where a page may not write to the clipboard
+      const area = make("textarea", { value: content });
+      document.body.append(area);
+      area.select();
+      button.textContent = document.execCommand("copy") ? "Copied" : "Not copied";
+      area.remove();
     }
-    setTimeout(() => { button.textContent = name; }, 1500);
+    setTimeout(() => { button.textContent = names.get(button); }, 1500);
   }
 
   byId("scene").replaceChildren(...page.scenes.map(({ name }) => make("option", { value: name, textContent: name })));
   byId("scene").addEventListener("change", () => open(byId("scene").value));
-  byId("reset").addEventListener("click", () => open(state.scene.name));
+  byId("reset").addEventListener("click", () => {
+    state.numbers = {};
+    state.fields.forEach((field) => show(field));
+    update();
+  });
   byId("share").addEventListener("click", () => {
     address();
     copy(byId("share"), location.href);
   });
-  byId("toml").addEventListener("click", () => aside.ask("text", { do: "text", numbers: changed() }, (answer) => copy(byId("toml"), answer.ok ?? answer.error)));
+  byId("toml").addEventListener("click", () => quick.ask("text", { do: "text", numbers: changed() }, (answer) => (answer.error ? failed(answer.error) : copy(byId("toml"), answer.ok))));
   for (const id of ["map-x", "map-y", "map-quantity", "map-model"]) byId(id).addEventListener("change", () => { map(); address(); });
-  new ResizeObserver(() => {
-    curves?.fit();
-    if (state.map) drawMap(byId("map"), state.map);
-  }).observe(byId("plots"));
+  new ResizeObserver(() => redrawn()).observe(byId("plots"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     curves?.plots.forEach(({ plot }) => plot.redraw(false));
     if (state.map) drawMap(byId("map"), state.map);
   });
   const fromAddress = () => new URLSearchParams(location.hash.slice(1));
+  const redrawn = () => {
+    curves?.fit();
+    if (state.map) drawMap(byId("map"), state.map);
+  };
+  for (const moment of ["beforeprint", "afterprint"]) window.addEventListener(moment, redrawn);
   window.addEventListener("hashchange", () => open(fromAddress().get("scene"), fromAddress()));
   document.documentElement.classList.add("interactive");
   window.impactcheck = { state, timings, changed };
