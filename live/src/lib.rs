@@ -1,6 +1,6 @@
 //! The reduced models in a web page: a scene, open to other numbers, and what the models give for them.
 //!
-//! Compiled to WebAssembly it reads no file and starts nothing. The page asks in JSON and gets JSON, through two functions.
+//! Compiled to WebAssembly it reads no file and starts nothing. The page sends requests in JSON and gets answers in JSON, through three functions.
 
 #![warn(missing_docs)]
 

@@ -1,14 +1,16 @@
 //! The live page: reduced models that answer in the page itself while a reader changes numbers. One file, offline.
 
-use crate::curves::{CommonAxis, sample};
+use crate::curves::{CommonAxis, SampledCurve, sample};
 use crate::error::{Error, Result};
-use crate::format::words;
+use crate::format::{rounded, words};
 use crate::kinds;
 use crate::reference::Stored;
+use crate::report::figure::geometry::PanelOf;
 use crate::report::kinds as shown;
 use crate::report::page::html::{named, page, scrolled};
 use crate::report::page::interactive::{STYLE as PLOT_STYLE, plotting};
 use crate::report::page::page_data::embedded;
+use crate::result::Quantity;
 use crate::scene::Template;
 use crate::validated::Validation;
 use base64::Engine;
@@ -25,7 +27,7 @@ const STYLE: &str = include_str!("assets/live.css");
 const SCRIPT: &str = include_str!("assets/live.js");
 const DRAWINGS: &str = include_str!("assets/live_drawings.js");
 const WORKER: &str = include_str!("assets/live_worker.js");
-/// Name of the page beside a report.
+/// Name of the page in the folder of a report.
 pub(crate) const FILE: &str = "live.html";
 /// Begin of what the page is about.
 const DOCUMENT: &str = "<script type=\"application/json\" id=\"live\">";
@@ -73,11 +75,11 @@ impl LiveScene {
             )));
         }
         let has = |name: &str| kind.has(scene, name);
-        let panel = |panel: &crate::report::figure::geometry::PanelOf| {
+        let panel = |panel: &PanelOf| {
             let curves: Vec<_> = panel.curves.iter().filter(|(_, name)| has(name)).collect();
             json!({"label": panel.label, "factor": panel.factor, "curves": curves})
         };
-        let quantity = |quantity: &crate::result::Quantity| {
+        let quantity = |quantity: &Quantity| {
             json!({
                 "name": quantity.name, "label": words(quantity.name), "unit": quantity.unit, "about": quantity.about,
                 "count": quantity.is_count,
@@ -87,7 +89,7 @@ impl LiveScene {
         Ok(Self(json!({
             "name": scene.name,
             "description": scene.description,
-            // what stands in files beside the scene is taken in
+            // with the record that it names, if it names one: the page reads no file
             "scene": template.text_with(&scene.name, &[])?,
             "mesh": mesh.map(|path| fs::read(path).map_err(|e| Error::io("reading", path, e)).and_then(|text| packed(&text))).transpose()?,
             "tolerance": tolerance,
@@ -118,11 +120,11 @@ impl LiveScene {
 fn reference(stored: &Stored) -> Option<Value> {
     let axis = CommonAxis { samples: SAMPLES, ..CommonAxis::of_reference(&stored.outcome)? };
     let short = |values: &[f64]| -> Vec<Option<f64>> {
-        let of = |v: &f64| v.is_finite().then(|| crate::format::rounded(*v, DIGITS));
+        let of = |v: &f64| v.is_finite().then(|| rounded(*v, DIGITS));
         values.iter().map(of).collect()
     };
     let summary = &stored.outcome.summary;
-    let of_curve = |curve: crate::curves::SampledCurve| {
+    let of_curve = |curve: SampledCurve| {
         let band = stored.bands.as_ref().and_then(|bands| bands.sampled(curve.quantity, &axis));
         let of = json!({"values": short(&curve.values), "band": band.map(|band| short(&band))});
         (curve.quantity.to_owned(), of)

@@ -125,8 +125,9 @@
   };
 
   const state = { scene: null, fields: [], models: [], numbers: {}, locks: new Set(), hidden: new Set(), results: {}, estimated: {}, end: 0, measures: [] };
-  let curves, mapRun = 0, rest, frame;
-  const timings = [];
+  let curves, mapRun = 0, rest, frame, isPlaced = false;
+  // milliseconds from the last input to the drawn curves, by model
+  const latest = {};
   const value = (field) => state.numbers[field.path] ?? field.value;
   const changed = () => Object.fromEntries(state.fields.filter((field) => value(field) !== field.value).map((field) => [field.path, value(field)]));
   const times = () => Array.from({ length: SAMPLES }, (_, k) => (state.end * k) / (SAMPLES - 1));
@@ -193,8 +194,8 @@
     box.addEventListener("change", () => {
       const written = box.value.trim();
       const unit = prefix(field.unit, value(field) || field.value).written;
-      const asked = /^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(written) ? `${written}${unit ? ` ${unit}` : ""}` : written;
-      quick.ask(`parse ${field.path}`, { do: "parse", field: field.path, text: asked }, (answer) => {
+      const withItsUnit = /^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(written) ? `${written}${unit ? ` ${unit}` : ""}` : written;
+      quick.ask(`parse ${field.path}`, { do: "parse", field: field.path, text: withItsUnit }, (answer) => {
         refuse(answer.error ?? "");
         if (answer.ok != null) set(field, answer.ok);
       });
@@ -275,10 +276,11 @@
         else if (state.estimated[model]?.error) delete state.estimated[model];
         follow();
       }
+      isPlaced &&= how === "course" && !answer.error;
       cancelAnimationFrame(frame);
       frame = requestAnimationFrame(() => {
         draw();
-        if (since) timings.push({ model, milliseconds: performance.now() - since });
+        if (since) latest[model] = performance.now() - since;
       });
     });
   }
@@ -293,8 +295,8 @@
     if (end > 0 && !(state.end && end <= 1.05 * state.end && end >= 0.4 * state.end)) state.end = 1.02 * end;
     for (const model of state.models) {
       const one = state.results[model];
-      if (one && one.sampled !== state.end && one.asked !== state.end) {
-        one.asked = state.end;
+      if (one && one.sampled !== state.end && one.requested !== state.end) {
+        one.requested = state.end;
         request(model, one.summary ? "run" : "course");
       }
     }
@@ -305,7 +307,9 @@
     if (state.end) curves.draw(times(), drawn);
     table();
     notes();
-    places();
+    // their place follows from whole runs alone
+    if (!isPlaced) places();
+    isPlaced = true;
   }
 
   function table() {
@@ -360,12 +364,12 @@
   };
 
   function notes() {
-    const said = new Map();
+    const warned = new Map();
     for (const model of state.models) {
       const { summary, error } = state.estimated[model] ?? {};
-      for (const warning of error ? [error] : summary?.warnings ?? []) said.set(warning, [...(said.get(warning) ?? []), model]);
+      for (const warning of error ? [error] : summary?.warnings ?? []) warned.set(warning, [...(warned.get(warning) ?? []), model]);
     }
-    const lines = [...said].map(([warning, models]) => make("li", { textContent: `${models.join(", ")}: ${warning}` }));
+    const lines = [...warned].map(([warning, models]) => make("li", { textContent: `${models.join(", ")}: ${warning}` }));
     const estimated = state.models.map((model) => [model, state.estimated[model]?.summary?.truncation_error]).filter(([, error]) => error != null);
     if (!lines.length) lines.push(make("li", { textContent: "No assumption is violated as far as it is checked." }));
     for (const model of state.models) {
@@ -380,7 +384,7 @@
     const current = state.models.filter((model) => state.estimated[model]?.of === JSON.stringify(changed()));
     if (current.length === state.models.length) {
       const of = (model) => (state.estimated[model].error ? `${model} no result` : `${model} ${withUnit(state.results[model]?.values[first.name], first.unit, 4)}`);
-      byId("status").textContent = `${first.label}: ${state.models.map(of).join(", ")}${said.size ? `; ${said.size} warning${said.size > 1 ? "s" : ""}` : ""}`;
+      byId("status").textContent = `${first.label}: ${state.models.map(of).join(", ")}${warned.size ? `; ${warned.size} warning${warned.size > 1 ? "s" : ""}` : ""}`;
     }
   }
 
@@ -598,6 +602,6 @@
   for (const moment of ["beforeprint", "afterprint"]) window.addEventListener(moment, redrawn);
   window.addEventListener("hashchange", () => open(fromAddress().get("scene"), fromAddress()));
   document.documentElement.classList.add("interactive");
-  window.impactcheck = { state, timings, changed };
+  window.impactcheck = { state, latest, changed };
   await open(fromAddress().get("scene"), fromAddress());
 })();

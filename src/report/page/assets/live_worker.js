@@ -1,4 +1,4 @@
-// Runs the models beside the page, so that it never waits. Gets the compiled models once, then requests; answers each.
+// Runs the models in a thread of their own, so that the page never waits. Gets the compiled models once, then requests; answers each.
 let models;
 function ask(request) {
   const bytes = new TextEncoder().encode(JSON.stringify(request));
