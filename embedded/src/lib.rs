@@ -10,17 +10,18 @@ use std::path::Path;
 
 /// The models for pages, below the folder of a build.
 const LIVE: &str = "wasm32-unknown-unknown/live/impactcheck_live.wasm";
+/// What the models for pages are made of.
+const SOURCES: [&str; 5] =
+    ["physics/src", "prediction/src", "live/src", "validation/base.jsonl", "Cargo.lock"];
 
 /// An expression of type `(&str, &[(&str, &[u8])])`: a word that changes with the files, and their paths, relative to the
 /// project, with their contents.
 #[proc_macro]
 pub fn files(_: TokenStream) -> TokenStream {
-    let package = std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets the folder of the package");
-    let root = Path::new(&package).ancestors().find(|folder| folder.join("scenes").is_dir());
-    let root = root.and_then(Path::to_str).expect("a package of the project");
+    let root = root();
     let mut found = BTreeMap::new();
     for folder in ["scenes", "meshes", "fem_reference"] {
-        collect(Path::new(root), folder, &mut found);
+        collect(Path::new(&root), folder, &mut found);
     }
     let shipped = |name: &str| found.contains_key(&format!("scenes/{name}.toml"));
     let selected: Vec<_> = found.iter().filter(|(path, _)| is_selected(path, shipped)).collect();
@@ -48,7 +49,8 @@ pub fn unit(_: TokenStream) -> TokenStream {
     .expect("Rust")
 }
 
-/// An expression of type `&[u8]`: the models for pages, as `make live-page` has compiled them; empty where it has not.
+/// An expression of type `&[u8]`: the models for pages, as `make live-page` has compiled them; empty where it has not, or where they are of
+/// other [`sources`] than the program's.
 #[proc_macro]
 pub fn live(_: TokenStream) -> TokenStream {
     let arguments: Vec<String> = std::env::args().collect();
@@ -56,12 +58,45 @@ pub fn live(_: TokenStream) -> TokenStream {
     // in the folder of the build of this machine, whatever the profile
     let mut places = folders.flat_map(|folder| Path::new(folder).ancestors().map(|place| place.join(LIVE)));
     let found = places.find(|path| path.is_file()).and_then(|path| path.canonicalize().ok());
+    let mark = mark_of_sources();
+    let is_current = |path: &std::path::PathBuf| {
+        fs::read(path).is_ok_and(|bytes| bytes.windows(mark.len()).any(|part| part == mark.as_bytes()))
+    };
     found
+        .filter(is_current)
         .map_or("&[]".to_owned(), |path| {
             format!("include_bytes!({:?}).as_slice()", path.display().to_string())
         })
         .parse()
         .expect("Rust")
+}
+
+/// An expression of type `&[u8]`: a mark of the sources that results follow from.
+#[proc_macro]
+pub fn sources(_: TokenStream) -> TokenStream {
+    format!("{:?}.as_bytes()", mark_of_sources()).parse().expect("Rust")
+}
+
+fn mark_of_sources() -> String {
+    let root = root();
+    let mut found = BTreeMap::new();
+    for place in SOURCES {
+        let path = Path::new(&root).join(place);
+        if path.is_dir() {
+            collect(Path::new(&root), place, &mut found);
+        } else {
+            found.insert(place.to_owned(), fs::read(path).expect(place));
+        }
+    }
+    let hash = found.iter().fold(0, |hash, (path, bytes)| fnv(fnv(hash, path.as_bytes()), bytes));
+    format!("impactcheck models {hash:016x}")
+}
+
+/// Folder of the project.
+fn root() -> String {
+    let package = std::env::var("CARGO_MANIFEST_DIR").expect("cargo sets the folder of the package");
+    let root = Path::new(&package).ancestors().find(|folder| folder.join("scenes").is_dir());
+    root.and_then(Path::to_str).expect("a package of the project").to_owned()
 }
 
 fn is_selected(path: &str, shipped: impl Fn(&str) -> bool) -> bool {

@@ -13,6 +13,11 @@ pub use request::PageRequest;
 
 use std::cell::RefCell;
 
+/// What sources the models are of: a program embeds no models of others, which would give other results than its own.
+#[used]
+#[unsafe(no_mangle)]
+pub static SOURCES: &[u8] = impactcheck_embedded::sources!();
+
 thread_local! {
     static PAGE: RefCell<LivePage> = RefCell::new(LivePage::default());
     static TEXT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };

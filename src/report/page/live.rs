@@ -58,7 +58,7 @@ impl LiveScene {
     /// integration of its models.
     ///
     /// # Errors
-    /// [`Error::Usage`] of a scene whose body is meshed; [`Error::Io`] of the mesh; [`Error::Internal`] of a scene that can't be written.
+    /// [`Error::Usage`] of a scene whose model C needs a solid mesh; [`Error::Io`] of the mesh; [`Error::Internal`] of a scene that can't be written.
     pub fn new(
         template: &Template,
         stored: Option<&Stored>,
@@ -98,9 +98,7 @@ impl LiveScene {
             "reference": stored.and_then(reference),
         })))
     }
-}
 
-impl LiveScene {
     /// Its name.
     pub(crate) fn name(&self) -> &str {
         self.0["name"].as_str().unwrap_or_default()
@@ -154,7 +152,7 @@ fn packed(bytes: &[u8]) -> Result<String> {
 pub fn live_page(scenes: &[LiveScene], validated: &[Validation]) -> Result<String> {
     let models = MODELS.get().copied().unwrap_or_default();
     if models.is_empty() {
-        return Err(Error::Usage("this program was built without the models for live pages".into()).hint([
+        return Err(Error::Usage("this program has no models for live pages, or had those of other sources when it was built".into()).hint([
             "`make live-page` builds them into the program; it needs `rustup target add wasm32-unknown-unknown`".into(),
         ]));
     }
