@@ -58,17 +58,17 @@ pub fn live(_: TokenStream) -> TokenStream {
     // in the folder of the build of this machine, whatever the profile
     let mut places = folders.flat_map(|folder| Path::new(folder).ancestors().map(|place| place.join(LIVE)));
     let found = places.find(|path| path.is_file()).and_then(|path| path.canonicalize().ok());
+    let Some(path) = found else { return "&[]".parse().expect("Rust") };
     let mark = mark_of_sources();
-    let is_current = |path: &std::path::PathBuf| {
-        fs::read(path).is_ok_and(|bytes| bytes.windows(mark.len()).any(|part| part == mark.as_bytes()))
+    let bytes = fs::read(&path).unwrap_or_default();
+    let is_current = bytes.windows(mark.len()).any(|part| part == mark.as_bytes());
+    let included = format!("include_bytes!({:?}).as_slice()", path.display().to_string());
+    let expression = match is_current {
+        true => included,
+        // named, so that cargo builds again when it has changed
+        false => format!("{{ const _: &[u8] = {included}; &[] }}"),
     };
-    found
-        .filter(is_current)
-        .map_or("&[]".to_owned(), |path| {
-            format!("include_bytes!({:?}).as_slice()", path.display().to_string())
-        })
-        .parse()
-        .expect("Rust")
+    expression.parse().expect("Rust")
 }
 
 /// An expression of type `&[u8]`: a mark of the sources that results follow from.
