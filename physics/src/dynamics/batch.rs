@@ -118,14 +118,7 @@ impl OscillatorBatch {
         let mut sums = [[f64x4::ZERO; 2]; 3];
         for ((block, &q), &v) in self.blocks.iter().zip(q).zip(v) {
             let Block { stiffness, damping, approach: [b0, b1], .. } = *block;
-            let moments = block.moments(t, &powers);
-            let mut displacement = moments[0] * q + moments[1] * (v + damping * q);
-            let mut rate = moments[0] * v - stiffness * moments[1] * q;
-            for p in 0..STAGES {
-                let force = b0 * forces[0][p] + b1 * forces[1][p];
-                displacement -= moments[p + 2] * force;
-                rate -= moments[p + 1] * force;
-            }
+            let [displacement, rate] = block.after(&block.moments(t, &powers), [q, v], forces);
             let acceleration = -(stiffness * displacement) - damping * rate - (b0 * now[0] + b1 * now[1]);
             for (sums, value) in sums.iter_mut().zip([displacement, rate, acceleration]) {
                 sums[0] += b0 * value;
@@ -144,6 +137,52 @@ impl OscillatorBatch {
         sums
     }
 
+    /// [`Self::approach_after`] without second derivatives, at the ends of so many equal `intervals` of a step of `h` s: the state goes on
+    /// from one to the next.
+    pub fn approaches_within(
+        &self,
+        (q, v): (&[f64x4], &[f64x4]),
+        forces: &[Stages; 2],
+        h: f64,
+        intervals: usize,
+    ) -> Vec<[[f64; 2]; 2]> {
+        let dt = h / intervals as f64;
+        let powers = powers(dt);
+        let moments: Vec<_> = self.blocks.iter().map(|block| block.moments(dt, &powers)).collect();
+        let fed: Vec<_> = self.fed.iter().map(|fed| fed.answers(dt)).collect();
+        let (mut state, mut forces): (Vec<[f64x4; 2]>, _) =
+            (q.iter().zip(v).map(|(q, v)| [*q, *v]).collect(), *forces);
+        let mut samples = Vec::with_capacity(intervals + 1);
+        loop {
+            let mut sums = [[f64x4::ZERO; 2]; 2];
+            for (block, state) in self.blocks.iter().zip(&state) {
+                for (sums, value) in sums.iter_mut().zip(state) {
+                    sums[0] += block.approach[0] * *value;
+                    sums[1] += block.approach[1] * *value;
+                }
+            }
+            samples.push(sums.map(|sums| sums.map(f64x4::reduce_add)));
+            if samples.len() > intervals {
+                return samples;
+            }
+            for ((block, moments), state) in self.blocks.iter().zip(&moments).zip(&mut state) {
+                *state = block.after(moments, *state, &forces);
+            }
+            for (fed, answers) in self.fed.iter().zip(&fed) {
+                let answers = answers.map(|answers| dot(&answers, &forces[0]));
+                let (block, lane) = (fed.place / LANES, fed.place % LANES);
+                for (value, answer) in state[block].iter_mut().zip(answers) {
+                    value.as_mut_array()[lane] -= answer;
+                }
+            }
+            // the derivatives at the end of the interval
+            let later = |force: Stages| {
+                std::array::from_fn(|p| (p..STAGES).map(|m| force[m] * powers[m - p]).sum::<f64>())
+            };
+            forces = forces.map(later);
+        }
+    }
+
     /// Rates of the approaches in m/s with the rates `v` of the oscillators.
     pub fn approach_rate(&self, v: &[f64x4]) -> [f64; 2] {
         let mut sums = [f64x4::ZERO; 2];
@@ -156,6 +195,20 @@ impl OscillatorBatch {
 }
 
 impl Block {
+    /// Coordinates and rates after the time of these `moments` from the `state` under forces with these derivatives by time in it.
+    #[inline(always)]
+    fn after(&self, moments: &[f64x4; MOMENTS], [q, v]: [f64x4; 2], forces: &[Stages; 2]) -> [f64x4; 2] {
+        let Block { stiffness, damping, approach: [b0, b1], .. } = *self;
+        let mut displacement = moments[0] * q + moments[1] * (v + damping * q);
+        let mut rate = moments[0] * v - stiffness * moments[1] * q;
+        for p in 0..STAGES {
+            let force = b0 * forces[0][p] + b1 * forces[1][p];
+            displacement -= moments[p + 2] * force;
+            rate -= moments[p + 1] * force;
+        }
+        [displacement, rate]
+    }
+
     /// The moments at time `t` > 0, as [`Oscillator::moments`]; `powers` are t^p / p! for p < STAGES.
     #[inline(always)]
     pub fn moments(&self, t: f64, powers: &[f64; STAGES]) -> [f64x4; MOMENTS] {

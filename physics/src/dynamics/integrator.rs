@@ -296,14 +296,23 @@ impl<'a> DryStepper<'a> {
     fn add_peaks(&mut self, trial: &Course) {
         let StepSolver { system, collocation, batch, .. } = &self.solver;
         let h = trial.h;
+        let forces = || trial.stages().map(|stages| collocation.derivatives(&stages, h));
+        let local = |approach: [f64; 2]| [0, 1].map(|i| approach[i] - system.gap[i]);
         let motion = |place: f64| {
-            let forces = trial.stages().map(|stages| collocation.derivatives(&stages, h));
-            let [approach, rate, acceleration] = batch.approach_after((&self.q, &self.v), &forces, place * h);
+            let [approach, rate, acceleration] =
+                batch.approach_after((&self.q, &self.v), &forces(), place * h);
             [
-                [approach[0] - system.gap[0], approach[1] - system.gap[1]],
+                local(approach),
                 rate.map(|rate| rate * h),
                 acceleration.map(|acceleration| acceleration * (h * h)),
             ]
+        };
+        let samples = |intervals: usize| {
+            let mut samples = batch.approaches_within((&self.q, &self.v), &forces(), h, intervals);
+            for [approach, rate] in &mut samples {
+                (*approach, *rate) = (local(*approach), rate.map(|rate| rate * h));
+            }
+            samples
         };
         let step = SolvedStep {
             system,
@@ -313,6 +322,7 @@ impl<'a> DryStepper<'a> {
             force: &trial.force,
             error: self.peak_error,
             motion,
+            samples,
         };
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             contact.force_peak = step.peak(i, contact.force_peak, |end| {

@@ -292,6 +292,10 @@ impl WetStepper<'_> {
             force: &force,
             error: 0.0,
             motion: &motion,
+            samples: |intervals: usize| {
+                let at = |k: usize| motion(k as f64 / intervals as f64);
+                (0..=intervals).map(at).map(|[approach, rate, _]| [approach, rate]).collect()
+            },
         };
         let peaks = [0, 1].map(|i| {
             step.peak(i, self.contacts[i].force_peak, |end| {
