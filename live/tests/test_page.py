@@ -99,6 +99,8 @@ def rest(page: Any) -> None:
             const one = live.state.estimated[model];
             return one && (one.error || one.of === now); }); }"""
     )
+    # what was answered stands in the table one frame later
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
 def shown(page: Any) -> dict[str, dict[str, float | None]]:

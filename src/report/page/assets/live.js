@@ -125,12 +125,18 @@
   };
 
   const state = { scene: null, fields: [], models: [], numbers: {}, locks: new Set(), hidden: new Set(), results: {}, estimated: {}, end: 0, measures: [] };
-  let curves, mapRun = 0, rest, frame, isPlaced = false;
-  // milliseconds from the last input to the drawn curves, by model
+  const answered = [];
+  let curves, rows, mapRun = 0, rest, isPlaced = false;
+  // milliseconds from an input to its drawn curves, of the last answers that were drawn, by model
   const latest = {};
   const value = (field) => state.numbers[field.path] ?? field.value;
   const changed = () => Object.fromEntries(state.fields.filter((field) => value(field) !== field.value).map((field) => [field.path, value(field)]));
-  const times = () => Array.from({ length: SAMPLES }, (_, k) => (state.end * k) / (SAMPLES - 1));
+  // the axis of the curves: the same array until its end moves
+  let axis = [];
+  const times = () => {
+    if (axis[SAMPLES - 1] !== state.end) axis = Array.from({ length: SAMPLES }, (_, k) => (k === SAMPLES - 1 ? state.end : (state.end * k) / (SAMPLES - 1)));
+    return axis;
+  };
 
   // fields: a slider over the range around the scene's value, and a box for any number with a unit
   function range(field) {
@@ -277,12 +283,16 @@
         follow();
       }
       isPlaced &&= how === "course" && !answer.error;
-      cancelAnimationFrame(frame);
-      frame = requestAnimationFrame(() => {
-        draw();
-        if (since) latest[model] = performance.now() - since;
-      });
+      answered.push({ model, since, isWhole: how === "run" || Boolean(answer.error) });
+      if (answered.length === 1) requestAnimationFrame(drawAnswers);
     });
+  }
+
+  // All that was answered since the last frame, at once.
+  function drawAnswers() {
+    const drawn = answered.splice(0);
+    draw(drawn.some(({ isWhole }) => isWhole));
+    for (const { model, since } of drawn) if (since) latest[model] = [...(latest[model] ?? []).slice(-199), performance.now() - since];
   }
 
   // The time axis follows the longest impact of all models, once all have answered for the same numbers; curves of another axis
@@ -302,58 +312,65 @@
     }
   }
 
-  function draw() {
+  // While numbers move, curves and numbers alone are drawn.
+  function draw(isWhole) {
     const drawn = Object.fromEntries(Object.entries(state.results).filter(([, { sampled }]) => sampled === state.end));
     if (state.end) curves.draw(times(), drawn);
-    table();
-    notes();
+    const now = JSON.stringify(changed());
+    table(now);
+    const isOld = state.models.some((model) => state.estimated[model]?.of !== now);
+    for (const id of ["warnings", "validated"]) byId(id).classList.toggle("old", isOld);
+    if (!isWhole) return;
+    notes(isOld);
     // their place follows from whole runs alone
     if (!isPlaced) places();
     isPlaced = true;
   }
 
-  function table() {
-    const reference = state.scene.reference?.values;
+  function table(now) {
+    const isCurrent = state.estimated.C?.of === now;
     const intervals = state.estimated.C?.prediction;
-    const isCurrent = state.estimated.C?.of === JSON.stringify(changed());
     const predicted = isCurrent && typeof intervals === "object" ? intervals : null;
-    const head = make("tr", {}, make("th", { scope: "col", textContent: "Quantity" }));
-    const heading = (textContent, title = "") => head.append(make("th", { scope: "col", textContent, title }));
-    for (const model of state.models) heading(model);
-    if (reference) heading("Reference of the original scene", "Value and 95 % band of the stored finite-element reference of the original scene");
-    if (predicted) heading("A reference would find (95 %)", "Interval in which a finite-element reference of the present scene lies with 95 % probability");
-    const now = JSON.stringify(changed());
-    const body = make("tbody");
-    for (const quantity of state.scene.quantities) {
+    if (!rows || rows.scene !== state.scene || rows.isPredicted !== Boolean(predicted)) rows = emptyTable(Boolean(predicted));
+    const reference = state.scene.reference?.values;
+    for (const { quantity, cells } of rows.lines) {
       const values = state.models.map((model) => state.results[model]?.values[quantity.name]);
       const size = Math.max(...[...values, reference?.[quantity.name]?.[0]].map((v) => Math.abs(v ?? 0)));
-      const line = make("tr", {}, make("th", { scope: "row", textContent: quantity.label, title: quantity.about }));
-      const cell = (content, si) => {
-        const td = make("td", { textContent: content });
-        if (si != null) td.dataset.si = si;
-        line.append(td);
-        return td;
-      };
-      const own = (td, model) => {
-        td.className = state.results[model]?.of === now ? "" : "old";
-        return td;
-      };
-      values.forEach((v, k) => Object.assign(own(cell(quantity.count && v != null ? String(v) : withUnit(v, quantity.unit, 5, size), v ?? ""), state.models[k]).dataset, { model: state.models[k], quantity: quantity.name }));
+      state.models.forEach((model, k) => {
+        const v = values[k];
+        cells[model].textContent = quantity.count && v != null ? String(v) : withUnit(v, quantity.unit, 5, size);
+        cells[model].className = state.results[model]?.of === now ? "" : "old";
+        cells[model].dataset.si = v ?? "";
+      });
       if (reference) {
         const [v, band] = reference[quantity.name] ?? [];
-        cell(v == null ? "–" : `${withUnit(v, quantity.unit, 5, size)}${band == null ? "" : ` ± ${withUnit(band, quantity.unit, 2, size)}`}`);
+        cells.reference.textContent = v == null ? "–" : `${withUnit(v, quantity.unit, 5, size)}${band == null ? "" : ` ± ${withUnit(band, quantity.unit, 2, size)}`}`;
       }
       if (predicted) {
         const one = predicted[quantity.name];
-        cell(one ? `${withUnit(one.low, quantity.unit, 4, size)} to ${withUnit(one.high, quantity.unit, 4, size)}` : "–");
+        cells.predicted.textContent = one ? `${withUnit(one.low, quantity.unit, 4, size)} to ${withUnit(one.high, quantity.unit, 4, size)}` : "–";
       }
-      body.append(line);
     }
-    byId("results").replaceChildren(make("thead", {}, head), body);
     const any = predicted && Object.values(predicted)[0];
     byId("prediction").textContent = !state.models.includes("C") || !state.estimated.C || !isCurrent ? "" : any
       ? `The intervals come from the errors of model C in ${any.scenes} solved scenes of the group “${any.stratum}”.`
       : typeof intervals === "string" ? `There is no interval of what a reference would find: ${intervals}.` : "";
+  }
+
+  // The table without numbers: its lines, and their cells by model, "reference" and "predicted".
+  function emptyTable(isPredicted) {
+    const columns = state.models.map((model) => [model, model, ""]);
+    if (state.scene.reference) columns.push(["reference", "Reference of the original scene", "Value and 95 % band of the stored finite-element reference of the original scene"]);
+    if (isPredicted) columns.push(["predicted", "A reference would find (95 %)", "Interval in which a finite-element reference of the present scene lies with 95 % probability"]);
+    const heading = (textContent, title = "") => make("th", { scope: "col", textContent, title });
+    const head = make("tr", {}, heading("Quantity"), ...columns.map(([, text, title]) => heading(text, title)));
+    const lines = state.scene.quantities.map((quantity) => {
+      const cells = Object.fromEntries(columns.map(([id]) => [id, make("td")]));
+      for (const model of state.models) Object.assign(cells[model].dataset, { model, quantity: quantity.name });
+      return { quantity, cells, row: make("tr", {}, make("th", { scope: "row", textContent: quantity.label, title: quantity.about }), ...Object.values(cells)) };
+    });
+    byId("results").replaceChildren(make("thead", {}, head), make("tbody", {}, ...lines.map(({ row }) => row)));
+    return { scene: state.scene, isPredicted, lines };
   }
 
   // the quantity that stands for a result: the efficiency, if it exists
@@ -363,7 +380,7 @@
     return quantities.find((quantity) => quantity.name === "efficiency" && has(quantity)) ?? quantities.find(has) ?? quantities[0];
   };
 
-  function notes() {
+  function notes(isOld) {
     const warned = new Map();
     for (const model of state.models) {
       const { summary, error } = state.estimated[model] ?? {};
@@ -378,11 +395,8 @@
     }
     if (estimated.length) lines.push(make("li", { textContent: `Estimated error by truncated modes: ${estimated.map(([model, error]) => `${model} ${digits(100 * error, 2)} %`).join(", ")}.` }));
     byId("warnings").replaceChildren(...lines);
-    const isOld = state.models.some((model) => state.estimated[model]?.of !== JSON.stringify(changed()));
-    for (const id of ["warnings", "validated"]) byId(id).classList.toggle("old", isOld);
-    const first = leading();
-    const current = state.models.filter((model) => state.estimated[model]?.of === JSON.stringify(changed()));
-    if (current.length === state.models.length) {
+    if (!isOld) {
+      const first = leading();
       const of = (model) => (state.estimated[model].error ? `${model} no result` : `${model} ${withUnit(state.results[model]?.values[first.name], first.unit, 4)}`);
       byId("status").textContent = `${first.label}: ${state.models.map(of).join(", ")}${warned.size ? `; ${warned.size} warning${warned.size > 1 ? "s" : ""}` : ""}`;
     }
@@ -538,7 +552,7 @@
       const box = make("input", { type: "checkbox", checked: !state.hidden.has(id) });
       box.addEventListener("change", () => {
         box.checked ? state.hidden.delete(id) : state.hidden.add(id);
-        draw();
+        draw(true);
         address();
       });
       const sample = make("span", { className: `sample sample-${id}` });

@@ -58,20 +58,26 @@ const liveDrawings = (() => {
       this.plots.push({ plot, panel, roles });
     }
 
-    // Draws the curves of `results` (by model: {curves: {end, values}}) at `times` in s.
+    // Draws the curves of `results` (by model: {curves: {end, values}}) at `times` in s; the reference is sampled once for these.
     draw(times, results) {
-      const reference = this.scene.reference;
-      const of = ({ source, name, sign }, factor) => {
-        if (this.hidden.has(source)) return times.map(() => null);
-        if (source !== "reference") return (results[source]?.curves.values[name] ?? times.map(() => null)).map((v) => v == null ? null : v * factor);
-        const { values, band } = reference.curves[name] ?? {};
-        if (!values || (sign && !band)) return times.map(() => null);
-        const shown = sign ? values.map((v, k) => v + sign * band[k]) : values;
-        return resampled(reference.times, shown, times).map((v) => v == null ? null : v * factor);
+      if (this.times !== times) Object.assign(this, { times, none: times.map(() => null), shown: times.map((t) => t * 1e6), sampled: new Map() });
+      const of = (role, factor) => {
+        if (this.hidden.has(role.source)) return this.none;
+        const values = role.source === "reference" ? this.reference(role) : results[role.source]?.curves.values[role.name];
+        return values?.map((v) => v == null ? null : v * factor) ?? this.none;
       };
-      for (const { plot, panel, roles } of this.plots) {
-        plot.setData([times.map((t) => t * 1e6), ...roles.map((role) => of(role, panel.factor))]);
+      for (const { plot, panel, roles } of this.plots) plot.setData([this.shown, ...roles.map((role) => of(role, panel.factor))]);
+    }
+
+    // the reference's curve at the times that are drawn, or its band's bound above or below; undefined where it has none
+    reference({ name, sign }) {
+      const key = `${name} ${sign}`;
+      if (!this.sampled.has(key)) {
+        const { times, curves } = this.scene.reference, { values, band } = curves[name] ?? {};
+        const bound = sign ? band && values?.map((v, k) => v + sign * band[k]) : values;
+        this.sampled.set(key, bound && resampled(times, bound, this.times));
       }
+      return this.sampled.get(key);
     }
 
     fit() {
