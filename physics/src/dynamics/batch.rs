@@ -231,15 +231,9 @@ impl Block {
     /// highest, recurrence downwards.
     #[inline(always)]
     fn series(&self, t: f64, powers: &[f64; STAGES], square: f64x4) -> [f64x4; MOMENTS] {
-        // up to (omega t)^2 = 4, or 0.25
-        let terms = if square.simd_lt(f64x4::splat(0.25)).to_bitmask() == 0b1111 { 6 } else { 10 };
-        let stumpff = |p: usize| {
-            let mut sum = f64x4::ZERO;
-            for m in (0..=terms).rev() {
-                sum = f64x4::splat(INVERSE_FACTORIAL[p + 2 * m]) - square * sum;
-            }
-            sum
-        };
+        // terms that are enough up to (omega t)^2 = 4, or 0.25
+        let near = square.simd_lt(f64x4::splat(0.25)).to_bitmask() == 0b1111;
+        let stumpff = |p: usize| if near { stumpff::<7>(p, square) } else { stumpff::<11>(p, square) };
         let mut moments = [f64x4::ZERO; MOMENTS];
         let high = powers[STAGES - 1] / INVERSE_FACTORIAL[STAGES - 1] * t;
         moments[MOMENTS - 2] = stumpff(MOMENTS - 2) * high;
@@ -270,6 +264,16 @@ impl Block {
         let moments = self.oscillators.map(|oscillator| oscillator.moments(t));
         std::array::from_fn(|p| f64x4::from(moments.map(|m| m[p])))
     }
+}
+
+/// The first `N` terms of Stumpff's function c_p at `square` = (omega t)^2.
+#[inline(always)]
+fn stumpff<const N: usize>(p: usize, square: f64x4) -> f64x4 {
+    let mut sum = f64x4::ZERO;
+    for m in (0..N).rev() {
+        sum = f64x4::splat(INVERSE_FACTORIAL[p + 2 * m]) - square * sum;
+    }
+    sum
 }
 
 /// At most [`LANES`] `values`, filled up with zeros.
