@@ -188,6 +188,8 @@ impl UnitPlates {
 
     fn unit(&self, edge: Edge, poisson_ratio: f64, modes: usize) -> Result<Arc<UnitPlate>> {
         let count = modes + usize::from(edge == Edge::Free);
+        // the edge's moments do no work where it is clamped: the modes are those of any Poisson's ratio
+        let poisson_ratio = if edge == Edge::Clamped { 0.3 } else { poisson_ratio };
         let fits = |unit: &UnitPlate| {
             unit.edge == edge && unit.poisson_ratio == poisson_ratio && unit.omega.len() == count
         };
