@@ -229,11 +229,14 @@ def refined(
 
 
 def _cost(scene: Scene, system: AxisymmetricSystem, estimate: ContactEstimate) -> str:
-    """What the first run on a mesh takes, about."""
-    end = scene.end_time or FIELD_DURATIONS * estimate.duration
+    """What a run on the finest mesh takes, about; the coarser ones follow."""
+    end = scene.end_time or FIELD_DURATIONS * estimate.longest
     steps = end / (0.9 * float(system.element_steps.min()))
     seconds = SECONDS_PER_DOF * system.inverse_mass.size * steps
-    return f"{system.mass.size} nodes, about {steps:.1g} steps, about {seconds:.1g} s on one core"
+    return (
+        f"{system.mass.size} nodes, about {steps:.1g} steps, about {seconds:.1g} s on one core "
+        "for the finest of the meshes"
+    )
 
 
 def _note(refinement: Refinement) -> str:

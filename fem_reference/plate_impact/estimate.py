@@ -48,6 +48,8 @@ class ContactEstimate:
     """The same for the inner body, m."""
     duration: float
     """Shorter of the two Hertz contact durations, s."""
+    longest: float
+    """The longer one."""
 
 
 def estimate_contact(scene: Scene) -> ContactEstimate:
@@ -107,7 +109,7 @@ def estimate_contact(scene: Scene) -> ContactEstimate:
         3.218 * hertz_time_scale(body.mass, k, speed)
         for k, body, speed in zip(stiffness, bodies, speeds, strict=True)
     ]
-    return ContactEstimate(radii[0], radii[1], min(durations))
+    return ContactEstimate(radii[0], radii[1], min(durations), max(durations))
 
 
 FULL_YIELDING = 2.8
@@ -150,12 +152,12 @@ def shortest_wavelengths(scene: Scene, duration: float) -> tuple[float, float, f
 
 
 FIELD_DURATIONS = 2.5
-"""A run without end time is covered by fields over this many Hertz contact durations."""
+"""A run without end time is covered by fields over this many of the longer contact durations."""
 
 
 def field_times(scene: Scene, count: int) -> tuple[float, ...]:
     """``count`` even instants over the run, s; those after its end are never reached."""
     if count == 0:
         return ()
-    end = scene.end_time or FIELD_DURATIONS * estimate_contact(scene).duration
+    end = scene.end_time or FIELD_DURATIONS * estimate_contact(scene).longest
     return tuple(float(t) for t in np.linspace(0.0, end, count))

@@ -10,7 +10,7 @@ import pytest
 from fem_reference.common.errors import SceneError
 from fem_reference.common.hertz import effective_modulus, hertz_stiffness, hertz_time_scale
 from fem_reference.explicit.records import peak_force
-from fem_reference.plate_impact.estimate import estimate_contact
+from fem_reference.plate_impact.estimate import estimate_contact, field_times
 from fem_reference.plate_impact.scene import parse_scene
 
 from .conftest import document, integrate, make_system, solve_once
@@ -91,6 +91,13 @@ def test_estimate_is_zeners_equation_with_a_light_plate() -> None:
     assert estimate_contact(zener).outer_radius == pytest.approx(radius, rel=1e-3)
 
 
+def test_a_light_inner_body_does_not_shorten_the_run_that_is_planned() -> None:
+    """The run goes on to the end of the longer contact, and so do its fields."""
+    light, equal = (parse_scene(document(inner__radius=radius)) for radius in (6e-4, 1e-2))
+    assert estimate_contact(light).duration < 0.2 * estimate_contact(equal).duration
+    assert field_times(light, 5)[-1] == pytest.approx(field_times(equal, 5)[-1])
+
+
 def test_estimate_is_confirmed_by_the_run() -> None:
     solution = solve_once(parse_scene(document(reference__elements_per_contact_radius=3)))
     assert solution.meshes_tried == 1
@@ -106,7 +113,9 @@ def test_mesh_is_made_again_when_the_contact_is_smaller_than_estimated(
 
     def too_large(scene: Scene) -> ContactEstimate:
         found = estimate_contact(scene)
-        return ContactEstimate(1.5 * found.outer_radius, 1.5 * found.inner_radius, found.duration)
+        return ContactEstimate(
+            1.5 * found.outer_radius, 1.5 * found.inner_radius, found.duration, found.longest
+        )
 
     monkeypatch.setattr(solve, "estimate_contact", too_large)
     scene = parse_scene(document(reference__elements_per_contact_radius=3))

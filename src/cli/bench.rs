@@ -61,7 +61,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
 }
 
 fn table(bench: &Bench) -> String {
-    let mut lines = vec![bench.machine.clone()];
+    let mut lines = vec![format!("{}, {}", bench.machine, bench.compiler)];
     lines.push(format!("{:<64} {:>5} {:>8} {:>12} {:>10}", "peer", "modes", "error", "ours, s", "ratio"));
     for ratio in &bench.ratios {
         lines.push(format!(

@@ -40,7 +40,7 @@ pub fn figure(bench: &Bench) -> String {
             (mark((x, y - 4.0), 4.0, i))
             text x=(x + 12.0) y=(y) { (solver) }
         }
-        text x="20" y=(height - 8.0) { (bench.machine) }
+        text x="20" y=(height - 8.0) { (bench.machine) ", " (bench.compiler) }
     };
     Svg::new("Run time against error", [width, height], Theme::Standalone).around(&drawing).into_string()
 }

@@ -63,6 +63,8 @@ pub struct Bench {
     pub schema_version: u32,
     /// Processor, system, number of cores.
     pub machine: String,
+    /// Compiler of this program, with its version.
+    pub compiler: &'static str,
     /// All runs.
     pub work_precision: Vec<WorkPrecision>,
     /// What follows from them.
@@ -123,6 +125,7 @@ pub fn run(settings: &Settings, store: &Store, note: &dyn Fn(&str)) -> Result<Be
     let mut bench = Bench {
         schema_version: SCHEMA_VERSION,
         machine: machine(),
+        compiler: env!("COMPILER"),
         work_precision: Vec::new(),
         ratios: Vec::new(),
         series: Vec::new(),
