@@ -5,6 +5,7 @@
 #![warn(missing_docs)]
 
 mod curves;
+mod flown;
 mod page;
 mod request;
 

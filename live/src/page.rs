@@ -1,6 +1,7 @@
 //! The scene of a page, and what its models give.
 
 use crate::curves;
+use crate::flown;
 use crate::request::{Numbers, PageRequest};
 use impactcheck_physics::kinds::{self, FollowedMesh, Kind, Series};
 use impactcheck_physics::result::{Outcome, Summary, Table};
@@ -146,7 +147,7 @@ impl Opened {
         let summary = &outcome.summary;
         let mut answer = json!({
             "summary": summary, "values": self.table(&scene, &summary.quantities),
-            "curves": curves::drawn(&outcome.history, end, samples),
+            "curves": curves::drawn(&outcome.history, end, samples), "flight": flown::drawn(&scene, summary),
         });
         if model == "C" {
             // the base predicts the errors of model C as it is by default

@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[2]
 PROGRAM = os.environ.get("IMPACTCHECK_PROGRAM", str(ROOT / "target/release/impactcheck"))
 PLATE = "scaled-plate-r10"
 SCENES = [PLATE, "scenes/validation/friction.toml", "scenes/examples/wet-valve-plate.toml"]
+FLIGHT = "scenes/examples/rocker-flight.toml"
 AXE = next(
     ROOT.glob("target/python-tools/lib/*/site-packages/axe_playwright_python/axe.min.js"), None
 )
@@ -43,7 +44,7 @@ def program(*arguments: str) -> str:
 def live(tmp_path_factory: pytest.TempPathFactory) -> Path:
     page = tmp_path_factory.mktemp("live") / "live.html"
     done = subprocess.run(
-        [PROGRAM, "live", *SCENES, "-o", str(page)],
+        [PROGRAM, "live", *SCENES, FLIGHT, "-o", str(page)],
         capture_output=True,
         text=True,
         cwd=ROOT,
@@ -224,6 +225,26 @@ def test_prediction_map_and_downloads(opened: Open, tmp_path: Path) -> None:
     for one, other in zip(ours[1:], theirs[1:], strict=True):
         pairs = zip(one.split(","), other.split(","), strict=True)
         assert all(float(a) == pytest.approx(float(b), rel=1e-6, abs=1e-9) for a, b in pairs)
+
+
+def test_flights_are_drawn_and_are_those_of_the_command(opened: Open) -> None:
+    page = opened("#scene=rocker-flight")
+    drawn = page.eval_on_selector_all(
+        "#flight polyline", "all => all.map((one) => one.dataset.model)"
+    )
+    models = page.evaluate("impactcheck.state.models")
+    assert drawn == models
+    for model in models:
+        found, last, seats = page.evaluate(
+            f"""(({{summary, flight}}) => [summary.flight, flight.path.at(-1), flight.seats])(
+            impactcheck.state.estimated[{model!r}])"""
+        )
+        flight = json.loads(program("reduced", FLIGHT, "--model", model, "--json"))["flight"]
+        assert found["seat"] == flight["seat"]
+        assert found["time"] == pytest.approx(flight["time"], rel=1e-6)
+        # the path ends on the side of the seat that is reached
+        nearest = min(range(2), key=lambda k: abs(last[0] - seats[k][0]))
+        assert flight["seat"] in ("none", ["same", "other"][nearest])
 
 
 @pytest.mark.parametrize(

@@ -207,6 +207,12 @@ fn body() -> Markup {
                 p.buttons #downloads {}
             }
         }
+        section #flight-section hidden {
+            h2 { "Flight after the impact" }
+            div.map #flight {}
+            ul.note #flights {}
+            p.note { "The chamber in section with the paths of the sphere's centre until its seat is certain; dashed: the sphere in both seats." }
+        }
         section #map-section {
             h2 { "Map over two numbers" }
             p.buttons {

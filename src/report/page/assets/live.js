@@ -3,7 +3,7 @@
 // warnings and the prediction follow when the numbers rest.
 (async () => {
   "use strict";
-  const { Curves, drawMap, validated, minus } = liveDrawings;
+  const { Curves, drawMap, flightPaths, validated, minus } = liveDrawings;
   const byId = (id) => document.getElementById(id);
   const page = JSON.parse(byId("live").textContent);
   const SAMPLES = 400, REST = 200, CELLS = 24;
@@ -319,9 +319,10 @@
     const now = JSON.stringify(changed());
     table(now);
     const isOld = state.models.some((model) => state.estimated[model]?.of !== now);
-    for (const id of ["warnings", "validated"]) byId(id).classList.toggle("old", isOld);
+    for (const id of ["warnings", "validated", "flight-section"]) byId(id).classList.toggle("old", isOld);
     if (!isWhole) return;
     notes(isOld);
+    flights();
     // their place follows from whole runs alone
     if (!isPlaced) places();
     isPlaced = true;
@@ -389,10 +390,6 @@
     const lines = [...warned].map(([warning, models]) => make("li", { textContent: `${models.join(", ")}: ${warning}` }));
     const estimated = state.models.map((model) => [model, state.estimated[model]?.summary?.truncation_error]).filter(([, error]) => error != null);
     if (!lines.length) lines.push(make("li", { textContent: "No assumption is violated as far as it is checked." }));
-    for (const model of state.models) {
-      const flight = state.estimated[model]?.summary?.flight;
-      if (flight) lines.push(make("li", { textContent: `${model}: the sphere comes to rest in ${flight.seat === "other" ? "the other seat" : "its own seat"} after ${withUnit(flight.time, "s", 3)}; it shifts from an impact speed of ${withUnit(flight.least_speed, "m/s", 3)} on.` }));
-    }
     if (estimated.length) lines.push(make("li", { textContent: `Estimated error by truncated modes: ${estimated.map(([model, error]) => `${model} ${digits(100 * error, 2)} %`).join(", ")}.` }));
     byId("warnings").replaceChildren(...lines);
     if (!isOld) {
@@ -400,6 +397,19 @@
       const of = (model) => (state.estimated[model].error ? `${model} no result` : `${model} ${withUnit(state.results[model]?.values[first.name], first.unit, 4)}`);
       byId("status").textContent = `${first.label}: ${state.models.map(of).join(", ")}${warned.size ? `; ${warned.size} warning${warned.size > 1 ? "s" : ""}` : ""}`;
     }
+  }
+
+  // where the sphere goes after the impact, in scenes that ask for it
+  function flights() {
+    const flown = state.models.map((model) => [model, state.estimated[model]]).filter(([, one]) => one?.flight);
+    byId("flight-section").hidden = !flown.length;
+    if (!flown.length) return;
+    byId("flight").innerHTML = flightPaths(flown.map(([model, { flight }]) => [model, flight]));
+    byId("flights").replaceChildren(...flown.map(([model, { summary: { flight } }]) => {
+      const rests = { other: "in the other seat", same: "in its own seat" }[flight.seat];
+      const ends = rests ? `the sphere comes to rest ${rests}, which is certain after ${withUnit(flight.time, "s", 3)}` : minus(flight.reason ?? "the sphere rests in neither seat");
+      return make("li", { textContent: `${model}: launched at ${withUnit(flight.launch.speed, "m/s", 3)}, ${ends}. No launch slower than ${withUnit(flight.least_speed, "m/s", 3)} can shift it.` });
+    }));
   }
 
   function places() {

@@ -225,5 +225,25 @@ const liveDrawings = (() => {
     return `<svg viewBox="0 0 ${size.join(" ")}" font-size="13" role="img" aria-label="${label}" fill="currentColor">${parts.join("")}</svg>`;
   }
 
-  return { Curves, drawMap, validated, minus };
+  // The chamber in section with the paths of `flights`: [model, {corners, seats, path, radius}] in m.
+  function flightPaths(flights) {
+    const [, { corners, seats, radius }] = flights[0];
+    const xs = corners.map(([x]) => x), left = Math.min(...xs), bottom = Math.min(...corners.map(([, z]) => z));
+    const highest = Math.max(...flights.flatMap(([, { path }]) => path.map(([, z]) => z)), seats[0][1]);
+    const top = Math.min(highest + 1.2 * radius, Math.max(...corners.map(([, z]) => z)));
+    const margin = 8, width = 380, scale = (width - 2 * margin) / (Math.max(...xs) - left);
+    const place = ([x, z]) => [margin + (x - left) * scale, margin + (top - z) * scale].map((v) => v.toFixed(1));
+    // walls end where the picture does
+    const line = (points) => points.map(([x, z]) => place([x, Math.min(z, top)]).join()).join(" ");
+    const circle = ([x, z]) => {
+      const [cx, cy] = place([x, z]);
+      return `<circle cx="${cx}" cy="${cy}" r="${(radius * scale).toFixed(1)}" fill="none" stroke="var(--soft)" stroke-dasharray="4 3"/>`;
+    };
+    const paths = flights.map(([model, { path }]) => `<polyline points="${line(path)}" fill="none" stroke="var(--${model.toLowerCase()})" stroke-width="2" stroke-dasharray="${DASHES[model].join(" ")}" data-model="${model}"/>`);
+    const height = 2 * margin + (top - bottom) * scale;
+    const label = `Paths of the sphere in the chamber: ${flights.map(([model]) => `model ${model}`).join(", ")}`;
+    return `<svg viewBox="0 0 ${width} ${height.toFixed(1)}" role="img" aria-label="${label}"><polygon points="${line(corners)}" fill="none" stroke="var(--fg)" stroke-width="1.5"/>${seats.map(circle).join("")}${paths.join("")}</svg>`;
+  }
+
+  return { Curves, drawMap, flightPaths, validated, minus };
 })();
