@@ -21,7 +21,7 @@ from .cad import VOLUME_ERROR, mesh_part
 from .contact import EDGE_ELEMENTS, described, located, require_inside_face
 from .files import CAD, checked, gmsh_session, read_mesh
 from .part import load
-from .remesh import remeshed
+from .remesh import neighbour
 from .scene import BodyScene, no_such_name, place
 from .source import Group
 from .tets import lengths, qualities, volume
@@ -93,7 +93,7 @@ def _from_cad(scene: BodyScene, path: Path, factor: float) -> Meshed:
             "body.element_size to a smaller one"
         )
     contacts = {name: made.contacts.get(name) for name in ("outer", "inner")}
-    about = {"cad_volume": made.volume, "size_scale": made.scale}
+    about = {"cad_volume": made.volume, "size_scale": made.scale, "size_factor": factor}
     return Meshed(made.body, made.fixed, contacts, groups, about)
 
 
@@ -112,8 +112,9 @@ def _from_mesh(scene: BodyScene, path: Path, factor: float) -> Meshed:
         require_inside_face(f"{name}.at", stated)
         contacts[name] = stated
     if factor > 1.0:
-        body, fixed, contacts = remeshed(body, fixed, contacts, factor, path.name)
-    return Meshed(body, fixed, contacts, groups, {"cad_volume": None, "size_scale": 1.0})
+        body, fixed, contacts, factor = neighbour(body, fixed, contacts, factor, path.name)
+    about = {"cad_volume": None, "size_scale": 1.0, "size_factor": factor}
+    return Meshed(body, fixed, contacts, groups, about)
 
 
 def material_index(body: Body, materials: dict[str, str]) -> tuple[Ints, list[str]]:
@@ -212,7 +213,7 @@ def write_body_mesh(path: Path, scene: BodyScene, factor: float) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         meshio.vtu.write(temporary, grid, binary=True, compression=None)
         digest = hashlib.sha256(temporary.read_bytes()).hexdigest()
-        write_json(partial, _description(made, digest, materials, factor))
+        write_json(partial, _description(made, digest, materials))
         temporary.replace(path)
         # last: whoever finds it finds the mesh
         partial.replace(described_path)
@@ -223,7 +224,7 @@ def write_body_mesh(path: Path, scene: BodyScene, factor: float) -> None:
         partial.unlink(missing_ok=True)
 
 
-def _description(made: Meshed, digest: str, materials: list[str], factor: float) -> dict[str, Any]:
+def _description(made: Meshed, digest: str, materials: list[str]) -> dict[str, Any]:
     body = made.body
     quality, edges = qualities(body.points, body.cells), lengths(body.points, body.cells)
     points: Floats = body.points
@@ -246,7 +247,6 @@ def _description(made: Meshed, digest: str, materials: list[str], factor: float)
         "groups": made.groups["groups"],
         "source": made.groups["source"],
         "unit": made.groups["unit"],
-        "size_factor": factor,
         "contacts": made.contacts,
         "versions": {"gmsh": gmsh.__version__, "meshio": meshio.__version__},
     }

@@ -1,4 +1,4 @@
-"""A coarser mesh of a body that came as a mesh."""
+"""Another mesh of a body that came as a mesh: coarser, or finer."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from .cells import GMSH_NODES
 from .contact import described
 from .curvature import Curvature
 from .files import gmsh_session
+from .halved import halved
 from .sizing import GROWTH, grid_field
 from .skin import FEATURE_ANGLE, Skin
 from .source import Group
@@ -27,6 +28,45 @@ TETRAHEDRON10 = 11
 VOLUME_ERROR = 0.05
 """Largest relative difference of the coarser mesh's volume from the mesh's own."""
 CANDIDATES = 8
+LAYERS = 2.0
+"""Elements through the wall of a contact below which a coarser mesh does not show the error: one
+layer is the least that both have."""
+MOST_HALVED = 8_000
+"""Elements that are still halved: eight times as many have some 270 000 degrees of freedom."""
+
+
+def neighbour(
+    body: Body, fixed: Mask, contacts: dict[str, Any], factor: float, name: str
+) -> tuple[Body, Mask, dict[str, Any], float]:
+    """Another mesh of the body, by whose results the error of its own is estimated.
+
+    It is coarser by ``factor``, or finer by 2 where the wall of a contact has one layer of
+    elements; with its fixed nodes, its contacts, and the size of its elements over the body's own.
+
+    Raises:
+        SolverError: as `remeshed`.
+    """
+    layers = [each["layers"] for each in contacts.values() if each and each["layers"] is not None]
+    if min(layers, default=LAYERS) < LAYERS and body.cells.shape[0] <= MOST_HALVED:
+        return *_refined(body, fixed, contacts), 0.5
+    return *remeshed(body, fixed, contacts, factor, name), factor
+
+
+def _refined(
+    body: Body, fixed: Mask, contacts: dict[str, Any]
+) -> tuple[Body, Mask, dict[str, Any]]:
+    points, cells = halved(body.points, body.cells)
+
+    def parts(elements: Ints) -> Ints:
+        return np.asarray((8 * elements[:, None] + np.arange(8)).ravel())
+
+    groups = [
+        Group(group.name, group.kind, elements=parts(group.elements))
+        for group in body.groups
+        if group.elements.size
+    ]
+    made = Body(points, cells, groups)
+    return made, moved_nodes(body, fixed, made), _moved_contacts(made, contacts)
 
 
 def remeshed(
@@ -160,7 +200,7 @@ def moved_nodes(body: Body, fixed: Mask, made: Body) -> Mask:
 
 
 def _moved_contacts(made: Body, contacts: dict[str, Any]) -> dict[str, Any]:
-    """The contacts on the coarser mesh, with the curvature of the mesh's own surface."""
+    """The contacts on the other mesh, with the curvature of the mesh's own surface."""
     moved: dict[str, Any] = {}
     for name, contact in contacts.items():
         moved[name] = None

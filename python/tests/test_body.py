@@ -61,6 +61,45 @@ def test_a_plate_given_as_step_is_the_circular_plate(
     assert abs(ours["first_frequency"] / truth["first_frequency"] - 1.0) < 0.005
 
 
+ONE_LAYER = """
+import gmsh
+gmsh.initialize()
+gmsh.option.setNumber("General.Terminal", 0)
+plate = gmsh.model.occ.addCylinder(0, 0, -1, 0, 0, 2, 33)
+gmsh.model.occ.synchronize()
+gmsh.model.addPhysicalGroup(3, [plate], name="plate")
+gmsh.model.addPhysicalGroup(2, [1], name="rim")
+field = gmsh.model.mesh.field
+field.add("MathEval", 1)
+field.setString(1, "F", "2 + 2.5 * Sqrt(x*x + y*y) / 33")
+field.setAsBackgroundMesh(1)
+for source in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
+    gmsh.option.setNumber("Mesh.MeshSize" + source, 0)
+gmsh.model.mesh.generate(3)
+gmsh.model.mesh.setOrder(2)
+gmsh.write("plate.msh")
+gmsh.finalize()
+"""
+
+
+def test_the_error_of_a_mesh_with_one_layer_is_that_of_a_finer_one(tmp_path: Path) -> None:
+    """A coarser mesh has one layer too: what both miss would not show."""
+    made(tmp_path, ONE_LAYER)
+    body = 'file = "plate.msh"\nunit = "mm"\nfixed = ["rim"]'
+    for radius, speed, shipped in [
+        ("10 mm", "550 mm/s", "scaled-plate-r10"),
+        ("6.35 mm", "437 mm/s", "scaled-plate-r6.35"),
+    ]:
+        behind = 'at = ["0 mm", "0 mm", "-1 mm"]'
+        name = scene(tmp_path, body, inner=behind, radius=radius, speed=speed)
+        ours = json.loads(run(tmp_path, "-q", "reduced", name, "--json")[0])
+        truth = json.loads(run(tmp_path, "-q", "reduced", shipped, "--model", "C", "--json")[0])
+        keys = ("efficiency", "outer_force_peak", "inner_force_peak")
+        error = max(abs(ours[key] / truth[key] - 1.0) for key in keys)
+        assert error < ours["mesh_error"] < 3.0 * error, (shipped, error)
+        assert any("one layer of elements" in warning for warning in ours["warnings"])
+
+
 def test_model_c_of_an_off_centre_impact_is_within_the_reference_s_uncertainty(
     tmp_path: Path,
 ) -> None:

@@ -9,6 +9,10 @@ use std::time::Duration;
 /// Between two looks at a lock that someone else holds.
 const LOOK: Duration = Duration::from_millis(100);
 
+/// How files of locks are named.
+const PREFIX: &str = "impactcheck-";
+const SUFFIX: &str = ".lock";
+
 /// The right to compute a solution, until it is dropped or its process ends.
 #[derive(Debug)]
 pub(super) struct Turn {
@@ -24,8 +28,10 @@ impl Turn {
     /// everyone computes.
     pub(super) fn take(entry: &Path, waiting: &mut dyn FnMut()) -> Self {
         let entry = std::path::absolute(entry).unwrap_or_else(|_| entry.to_owned());
-        let name = format!("impactcheck-{}.lock", &sha256_hex(entry.as_os_str().as_encoded_bytes())[..16]);
-        let path = std::env::temp_dir().join(name);
+        let name = format!("{PREFIX}{}{SUFFIX}", &sha256_hex(entry.as_os_str().as_encoded_bytes())[..16]);
+        let folder = std::env::temp_dir();
+        remove_leftovers(&folder);
+        let path = folder.join(name);
         let mut waited = false;
         let lock = lock(&path, &mut || {
             waited = true;
@@ -56,6 +62,20 @@ fn lock(path: &Path, waiting: &mut dyn FnMut()) -> Option<File> {
     }
 }
 
+/// Removes the files in `folder` that killed runs left: no one holds their locks.
+fn remove_leftovers(folder: &Path) {
+    let is_lock = |name: &str| name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+    for path in std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+        if path.file_name().and_then(|name| name.to_str()).is_some_and(is_lock)
+            && let Ok(file) = File::options().append(true).open(&path)
+            && file.try_lock().is_ok()
+            && is_at(&file, &path)
+        {
+            let _ = std::fs::remove_file(&path);
+        }
+    }
+}
+
 /// Whether `file` is what lies at `path`.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
@@ -73,7 +93,7 @@ fn is_at(_: &File, _: &Path) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Temporary, Turn, lock};
+    use super::{Temporary, Turn, lock, remove_leftovers};
     use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 
     #[test]
@@ -99,5 +119,18 @@ mod tests {
             }
         });
         assert_eq!(std::fs::read_dir(folder.path()).expect("folder").count(), 0);
+    }
+
+    #[test]
+    fn what_a_killed_run_left_is_removed_and_what_is_held_stays() {
+        let folder = tempfile::tempdir().expect("folder");
+        let [left, held, other] =
+            ["impactcheck-1.lock", "impactcheck-2.lock", "another.lock"].map(|name| folder.path().join(name));
+        for path in [&left, &other] {
+            std::fs::write(path, "").expect("written");
+        }
+        let _held = lock(&held, &mut || {}).expect("locked");
+        remove_leftovers(folder.path());
+        assert_eq!([&left, &held, &other].map(|path| path.exists()), [false, true, true]);
     }
 }

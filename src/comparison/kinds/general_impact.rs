@@ -6,7 +6,7 @@
 use crate::comparison::Verdict;
 use crate::comparison::budget::{Part, QuantityBudget};
 use crate::error::Result;
-use crate::kinds::general_impact::{Neighbours, OF_COARSER, neighbours};
+use crate::kinds::general_impact::{Neighbours, neighbours};
 use crate::result::{Outcome, Summary, Table};
 use crate::scene::Scene;
 
@@ -41,10 +41,10 @@ fn budget(
     let value = model.value(quantity)?;
     let theirs = reference.value(quantity)?;
     let own = found.own.as_ref()?.value(quantity)?;
-    let change = |other: &Option<Table>| Some(other.as_ref()?.value(quantity)? - own);
-    let modes = change(&found.fewer_modes)?.abs();
-    // on a coarser mesh the error is 2^p times as large
-    let mesh = OF_COARSER * change(&found.coarser_mesh).unwrap_or(0.0);
+    let change = |other: &Table| Some(other.value(quantity)? - own);
+    let modes = change(found.fewer_modes.as_ref()?)?.abs();
+    let other = found.other_mesh.as_ref();
+    let mesh = other.and_then(|other| Some(other.share * change(&other.found)?)).unwrap_or(0.0);
     let part = |cause: &str, switch: &str, value: f64, uncertainty: f64| Part {
         cause: cause.into(),
         switch: switch.into(),
@@ -58,12 +58,7 @@ fn budget(
             0.0,
             modes,
         ),
-        part(
-            "mesh_of_the_body",
-            "the body's mesh → extrapolated from it and one with elements twice as large",
-            mesh,
-            mesh.abs(),
-        ),
+        part("mesh_of_the_body", "the body's mesh → extrapolated from it and another one", mesh, mesh.abs()),
     ];
     let difference = value - theirs;
     let remainder = difference - mesh;
@@ -88,7 +83,7 @@ fn budget(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kinds::general_impact::ImpactQuantities;
+    use crate::kinds::general_impact::{ImpactQuantities, OnOtherMesh};
     use crate::scene::Model;
 
     fn table(efficiency: f64) -> Table {
@@ -110,7 +105,7 @@ mod tests {
         let found = Neighbours {
             own: Some(table(0.2)),
             fewer_modes: Some(table(0.2002)),
-            coarser_mesh: Some(table(0.196)),
+            other_mesh: Some(OnOtherMesh { found: table(0.196), share: 0.5 }),
         };
         let row = budget("efficiency", &found, &summary(0.2), &summary(0.201)).expect("a budget");
         let parts: f64 = row.parts.iter().map(|part| part.value).sum();

@@ -60,6 +60,8 @@ pub struct ContactInfo {
 #[derive(Deserialize)]
 struct BodyMeshInfo {
     bounding_box: [[f64; 3]; 2],
+    /// Size of the elements over those of the body's own mesh.
+    size_factor: f64,
     contacts: Contacts,
     materials: Vec<String>,
 }
@@ -97,6 +99,14 @@ impl BodyMesh {
             return Err(unusable(path, "has cells whose material is not described"));
         }
         Ok(Self { mesh, fixed, materials, material_of_cell })
+    }
+
+    /// Size of the elements over those of the body's own mesh, as the description of the mesh file at `path` has it.
+    ///
+    /// # Errors
+    /// [`Error::Solver`] if it can't be read.
+    pub fn size_factor(path: &Path) -> Result<f64> {
+        Ok(description(path)?.size_factor)
     }
 
     /// Lengths in m of the box around the body, as the description of the mesh file at `path` has it.

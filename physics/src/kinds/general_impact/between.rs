@@ -1,6 +1,6 @@
 //! An elastic body or a plate that the outer body strikes, and the inner body behind it if there is one.
 
-use super::elastic::{self, ElasticBody};
+use super::elastic::{self, ElasticBody, OnOtherMesh};
 use super::scene::sphere_radius;
 use super::{Body, MeshRequest};
 use crate::analytical::hertz::HertzImpact;
@@ -21,8 +21,8 @@ const DROPPED: usize = 1;
 /// What the outer body strikes, if that is elastic.
 #[derive(Debug)]
 pub(super) struct Between {
-    /// The same impact on the body's coarser mesh.
-    pub(super) coarse: Option<System>,
+    /// The same impact on another mesh of the body.
+    pub(super) other: Option<OnOtherMesh<System>>,
     /// Cosine of the angle between the direction of the outer contact and the inner one's, both along z: 1 on parallel faces.
     alignment: f64,
     /// By how many modes less the error for want of modes is found.
@@ -75,8 +75,8 @@ impl Between {
             Some(inner) => System::between(&[outer.clone(), inner.clone()], &modal, faces, tips),
             None => System::on_body(outer.clone(), &modal, faces[0], tips[0]),
         };
-        let (fine, coarse) = elastic.modal(body, patch);
-        let system = join(fine);
+        let (own, other) = elastic.modal(body, patch);
+        let system = join(own);
         let normals: Vec<Vector3<f64>> = elastic.contacts.iter().map(|c| Vector3::from(c.normal)).collect();
         let mut warnings = elastic.warnings.clone();
         warnings.extend(elastic.patch_warnings(patch));
@@ -86,10 +86,10 @@ impl Between {
             warnings.extend(elastic.ellipses(radii)?);
         }
         let between = Self {
-            coarse: coarse.map(join),
+            other: other.map(|other| other.map(join)),
             alignment: normals.get(1).map_or(0.0, |inner| -normals[0].dot(inner)),
-            free_mass: (!elastic.fine.rigid.is_empty())
-                .then_some(body.materials.named(None).density * elastic.fine.mass),
+            free_mass: (!elastic.own.rigid.is_empty())
+                .then_some(body.materials.named(None).density * elastic.own.mass),
             fewer: 2 * DROPPED * elastic.contacts.len(),
             warnings,
         };
@@ -122,7 +122,7 @@ impl Between {
             ));
         }
         let between = Self {
-            coarse: None,
+            other: None,
             alignment: 0.0,
             fewer: system.modes / 2,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
@@ -139,7 +139,7 @@ impl Between {
     }
 }
 
-/// The system of `outer` that strikes `plate` beside its centre, behind which `inner` lies, on a mesh and on a coarser one if there is one; and
+/// The system of `outer` that strikes `plate` beside its centre, behind which `inner` lies, on a mesh and on another one if there is one; and
 /// what the user has to know of them.
 ///
 /// # Errors
@@ -148,7 +148,7 @@ pub(in crate::kinds) fn off_centre_plate(
     plate: &Plate,
     outer: &Outer,
     inner: &Inner,
-) -> Result<(System, Option<System>, Vec<String>)> {
+) -> Result<(System, Option<OnOtherMesh<System>>, Vec<String>)> {
     let body = Body::of_plate(plate, outer.offset);
     let elastic = ElasticBody::new(&body)?;
     let (mut system, between) =
@@ -156,7 +156,7 @@ pub(in crate::kinds) fn off_centre_plate(
     // the plate is observed at its centre, under the inner body
     let inner: Vec<f64> = system.approach[1][PLATE..].iter().map(|approach| -approach).collect();
     system.centre[PLATE..].copy_from_slice(&inner);
-    Ok((system, between.coarse, between.warnings))
+    Ok((system, between.other, between.warnings))
 }
 
 /// The meshes of a `plate` that `outer` strikes off its centre.

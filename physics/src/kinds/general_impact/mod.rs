@@ -14,7 +14,8 @@ pub(super) use between::{off_centre_meshes, off_centre_plate};
 pub use body::{
     Announcer, Body, BodyMaterials, BodyPlace, Disc, MeshRequest, Mesher, content, set_announcer, set_mesher,
 };
-pub use model::{Neighbours, OF_COARSER, difference_from_hertz, neighbours};
+pub use elastic::OnOtherMesh;
+pub use model::{Neighbours, difference_from_hertz, neighbours};
 pub use results::{CURVES, ImpactQuantities};
 pub use scene::{GeneralImpact, Struck, Wall};
 

@@ -6,7 +6,7 @@
 mod sideways;
 
 use super::between::Between;
-use super::elastic::{self, ElasticBody};
+use super::elastic::{self, ElasticBody, OnOtherMesh};
 use super::scene::sphere_radius;
 use super::{CURVES, GeneralImpact, ImpactQuantities, Kind, Struck};
 use crate::body::free_sphere::sphere_residual;
@@ -27,9 +27,6 @@ use crate::scene::{self, Inner, Model, Outer, Scene};
 
 /// Tolerance of the runs that compare force peaks with and without what the model omits.
 const LOW_ACCURACY: f64 = 1e-6;
-/// Error of a mesh over the change from one with elements twice as large: 1/(2^p - 1) with the order p = 1.6. On nine meshes of a plate,
-/// whose edge is singular, p was 1.8 to 3.3: the error is rather stated too large.
-pub const OF_COARSER: f64 = 0.5;
 /// Quantities whose change is the error by modes or mesh.
 const COMPARED: [&str; 3] = ["efficiency", "outer_force_peak", "inner_force_peak"];
 /// Change of the force peak by it from which on there is a warning.
@@ -242,8 +239,8 @@ impl ContactModel {
         let notable = omitted.filter(|error| *error > NOTABLE);
         warnings.extend(notable.map(|error| format!("{what} by about {:.1} %", 100.0 * error)));
         let mesh_error = self.between.as_ref().and_then(|between| {
-            let coarse = between.coarse.as_ref()?;
-            Some(OF_COARSER * self.change(&self.system, &coarse.lowest(self.system.modes))?)
+            let other = between.other.as_ref()?;
+            Some(other.share.abs() * self.change(&self.system, &other.found.lowest(self.system.modes))?)
         });
         warnings.extend(mesh_error.filter(|error| *error > NOTABLE).map(|error| {
             format!("the body's mesh changes forces or efficiency by about {:.1} %: refine it", 100.0 * error)
@@ -348,8 +345,8 @@ pub struct Neighbours {
     pub own: Option<Table>,
     /// With fewer modes.
     pub fewer_modes: Option<Table>,
-    /// On a mesh with elements twice as large, if there is one.
-    pub coarser_mesh: Option<Table>,
+    /// On another mesh, if there is one.
+    pub other_mesh: Option<OnOtherMesh<Table>>,
 }
 
 /// What modes and mesh change in the results of `scene`; `None` if nothing elastic lies between the bodies.
@@ -359,11 +356,14 @@ pub struct Neighbours {
 pub fn neighbours(scene: &Scene) -> Result<Option<Neighbours>> {
     let model = ContactModel::new(scene, None)?;
     let Some(between) = &model.between else { return Ok(None) };
-    let coarse = between.coarse.as_ref().map(|coarse| coarse.lowest(model.system.modes));
+    let other = between.other.as_ref().and_then(|other| {
+        let found = model.roughly(&other.found.lowest(model.system.modes))?;
+        Some(OnOtherMesh { found, share: other.share })
+    });
     Ok(Some(Neighbours {
         own: model.roughly(&model.system),
         fewer_modes: model.roughly(&model.with_fewer_modes(between)),
-        coarser_mesh: coarse.and_then(|coarse| model.roughly(&coarse)),
+        other_mesh: other,
     }))
 }
 

@@ -14,7 +14,7 @@ use crate::dynamics::system::{PLATE, System};
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::fluid::added_mass::{immersed, mass_factor};
-use crate::kinds::general_impact::off_centre_plate;
+use crate::kinds::general_impact::{OnOtherMesh, off_centre_plate};
 use crate::scene::DEFAULT_MODES;
 use crate::scene::{Edge, Material, Model, Shape};
 
@@ -88,7 +88,7 @@ pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize) -> Result<Sys
     Ok(system)
 }
 
-/// Model C with `modes` modes, or all there are, of a plate that is struck beside its centre: as a body from a mesh; and the same on a coarser
+/// Model C with `modes` modes, or all there are, of a plate that is struck beside its centre: as a body from a mesh; and the same on another
 /// mesh.
 ///
 /// # Errors
@@ -96,8 +96,8 @@ pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize) -> Result<Sys
 pub(super) fn off_centre_continuum(
     setup: &PlateImpact,
     modes: Option<usize>,
-) -> Result<(Assembled, Option<System>)> {
-    let (system, coarse, warnings) = off_centre_plate(&setup.plate, &setup.outer, &setup.inner)?;
+) -> Result<(Assembled, Option<OnOtherMesh<System>>)> {
+    let (system, other, warnings) = off_centre_plate(&setup.plate, &setup.outer, &setup.inner)?;
     let modes = modes.unwrap_or(system.modes);
     if modes > system.modes {
         return Err(Error::Usage(format!(
@@ -106,8 +106,8 @@ pub(super) fn off_centre_continuum(
         )));
     }
     let system = system.lowest(modes);
-    let coarse = coarse.map(|coarse| coarse.lowest(modes));
-    Ok((Assembled { system, omega_next: f64::INFINITY, fluid: None, warnings }, coarse))
+    let other = other.map(|other| other.map(|system| system.lowest(modes)));
+    Ok((Assembled { system, omega_next: f64::INFINITY, fluid: None, warnings }, other))
 }
 
 /// Models A and B with `modes` elastic modes.

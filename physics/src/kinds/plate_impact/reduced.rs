@@ -11,6 +11,7 @@ use crate::dynamics::memory::Memory;
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
+use crate::kinds::general_impact::OnOtherMesh;
 use crate::result::Choice;
 use crate::scene::DEFAULT_MODES;
 use crate::scene::{Edge, Model, Outer, Scene};
@@ -30,8 +31,8 @@ pub struct Reduced {
     /// What its materials remember; elastic ones take the integrator that knows nothing of it.
     memory: Option<Memory>,
     warnings: Vec<String>,
-    /// The same on a coarser mesh, of a plate that is meshed.
-    coarse: Option<System>,
+    /// The same on another mesh, of a plate that is meshed.
+    other: Option<OnOtherMesh<System>>,
     /// Why it is this model, if it was left to the program.
     choice: Option<Choice>,
     scene: Scene,
@@ -79,8 +80,8 @@ impl Reduced {
                 kirchhoff(setup, modes.unwrap_or(default), &bodies.kirchhoff)?
             }
             Model::C if setup.outer.offset > 0.0 => {
-                let (built, coarse) = off_centre_continuum(setup, modes)?;
-                return Ok(Self { coarse, ..Self::of(built, model, scene)? });
+                let (built, other) = off_centre_continuum(setup, modes)?;
+                return Ok(Self { other, ..Self::of(built, model, scene)? });
             }
             Model::C => {
                 let predictor = bodies.predictor(setup)?;
@@ -105,7 +106,7 @@ impl Reduced {
         if let Some(memory) = &memory {
             system.first_frequency = memory.frequency(system.first_frequency);
         }
-        Ok(Self { model, system, omega_next, fluid, memory, warnings, coarse: None, choice: None, scene })
+        Ok(Self { model, system, omega_next, fluid, memory, warnings, other: None, choice: None, scene })
     }
 
     /// With the reason why it was chosen, and a warning where it does not meet the tolerance.

@@ -29,6 +29,8 @@ const MANY: usize = 256;
 const MORE: usize = 4;
 /// Its error over the difference to them.
 const OFF_CENTRE_SAFETY: f64 = 1.2;
+/// Steps of an impact from which on fewer modes count as converged, and the number of modes that is enough is estimated and not tried out.
+const LONG: u64 = 10_000;
 /// Largest ratio of two models' errors that is trusted.
 const NEAR: f64 = 0.9;
 
@@ -42,7 +44,7 @@ pub(super) struct Truncation {
 }
 
 /// Estimates what the modes left out of `system`, which is `model` of `setup`, change within `end_time` s; the plate of model C
-/// has its next frequency at `omega_next` rad/s.
+/// has its next frequency at `omega_next` rad/s. The impact took so many `steps`.
 ///
 /// # Errors
 /// As [`Trials::new`].
@@ -52,6 +54,7 @@ pub(super) fn estimate(
     system: &System,
     omega_next: f64,
     end_time: Option<f64>,
+    steps: u64,
 ) -> Result<Truncation> {
     if setup.outer.offset > 0.0 && model == Model::C {
         let options = Options { tolerance: INTEGRATION, end_time, ..Options::default() };
@@ -68,7 +71,8 @@ pub(super) fn estimate(
         (fluid.squeeze_film, fluid.drag_coefficient) = (false, 0.0);
     }
     let options = Options { tolerance: INTEGRATION, end_time, ..Options::default() };
-    let resolution = RESOLUTION[usize::from(model < Model::C)];
+    let is_long = steps > LONG;
+    let resolution = RESOLUTION[usize::from(model < Model::C && !is_long)];
     let trials = Trials::new(&dry, resolution, options)?;
     let converged = match model {
         Model::A | Model::B => trials.converged(),
@@ -92,7 +96,8 @@ pub(super) fn estimate(
     }
     truncation.error += undamped;
     let warning = (truncation.error > LARGEST).then(|| {
-        let enough = RUNGS.into_iter().find(|n| *n > modes && of(*n).error + undamped <= LARGEST);
+        let error = |modes| if is_long { trials.truncation(modes) } else { of(modes).error };
+        let enough = RUNGS.into_iter().find(|n| *n > modes && error(*n) + undamped <= LARGEST);
         // of a continuum some modes are no bending modes
         let enough = enough.map(|bending| bending + system.modes - modes);
         warning(model, system.modes, truncation, enough)

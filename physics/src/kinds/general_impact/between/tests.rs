@@ -57,7 +57,7 @@ fn struck(
     };
     let solid =
         StruckSolid::new(&mesh, &CellMaterials::one(steel()), &fixed, &[contact.struck()]).expect("solid");
-    let elastic = ElasticBody { fine: solid, coarse: None, contacts: vec![contact], warnings: Vec::new() };
+    let elastic = ElasticBody { own: solid, other: None, contacts: vec![contact], warnings: Vec::new() };
     let body = Body {
         file: "block.msh".into(),
         content: String::new(),

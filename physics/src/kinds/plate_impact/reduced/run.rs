@@ -9,7 +9,6 @@ use crate::dynamics::integrator::integrate;
 use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
-use crate::kinds::general_impact::OF_COARSER;
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
 use crate::kinds::plate_impact::results::{PlateQuantities, quantities, values};
 use crate::kinds::plate_impact::trials::TruncationError;
@@ -267,12 +266,13 @@ impl Reduced {
         PlateQuantities { efficiency, ..quantities }
     }
 
-    /// Relative error by the mesh of the plate, from what a coarser one changes.
+    /// Relative error by the mesh of the plate, from what another one changes.
     fn mesh_error(&self) -> Option<f64> {
         let options = Options { tolerance: MESH_TOLERANCE, ..self.options(MESH_TOLERANCE) };
         let run = |system: &System| quantities(system, &integrate(system, &options).ok()?).ok();
-        let (coarse, own) = (run(self.coarse.as_ref()?)?, run(&self.system)?);
-        Some(OF_COARSER * TruncationError::between(&coarse, &own, self.system.speed).error)
+        let other = self.other.as_ref()?;
+        let (found, own) = (run(&other.found)?, run(&self.system)?);
+        Some(other.share.abs() * TruncationError::between(&found, &own, self.system.speed).error)
     }
 
     fn options(&self, tolerance: f64) -> Options {
@@ -303,7 +303,8 @@ impl Reduced {
         let (system, tolerance) = (&self.system, tolerance.max(result.least_tolerance));
         let setup = &*self.scene.plate_impact()?.along_normal();
         let end_time = self.scene.run.end_time;
-        let truncation = truncation::estimate(setup, self.model, system, self.omega_next, end_time)?;
+        let truncation =
+            truncation::estimate(setup, self.model, system, self.omega_next, end_time, result.steps)?;
         let mesh_error = self.mesh_error();
         let even_steps = result.least_tolerance > 0.0;
         let mut warnings = scene::doubts(&self.scene);
