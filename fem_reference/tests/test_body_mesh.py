@@ -18,6 +18,7 @@ from fem_reference.body.body import Body, body_of, fixed_mask
 from fem_reference.body.cells import HEX_EDGES, HEX_FACES, SOLIDS
 from fem_reference.body.files import gmsh_session, read_mesh
 from fem_reference.body.mesh_file import Meshed, meshed, write_body_mesh
+from fem_reference.body.remesh import remeshed
 from fem_reference.body.scene import parse_body_scene
 from fem_reference.body.source import MeshFile
 from fem_reference.body.tets import qualities, volume
@@ -366,22 +367,33 @@ def test_a_smooth_face_of_a_mesh_is_fixed_by_a_point(plate_msh: Path) -> None:
 
 
 @pytest.mark.parametrize("order", [1, 2])
-def test_larger_elements_keep_the_body(tmp_path: Path, order: int) -> None:
+@pytest.mark.parametrize("size", [2.0, 0.5], ids=["coarser", "finer"])
+def test_another_mesh_keeps_the_body(tmp_path: Path, order: int, size: float) -> None:
+    """The finer one is that of a plate with one layer of elements."""
     path = write_mesh(tmp_path / "plate.msh", plate, 2.5, order, PLATE_FACES)
-    finer = result_of(path, "top", fixed=["rim"])
-    coarser = result_of(path, "top", 2.0, fixed=["rim"], materials={"all": "steel"})
-    assert 2.0 * coarser.body.cells.shape[0] < finer.body.cells.shape[0]
-    own = volume(finer.body.points, finer.body.cells)
-    assert volume(coarser.body.points, coarser.body.cells) == pytest.approx(own, rel=1e-2)
-    radius = np.hypot(*coarser.body.points[:, :2].T)
-    assert radius[coarser.fixed].min() > 0.0323
-    # the whole rim, not more: its corner nodes are those of the old rim's chords
-    corners = np.unique(coarser.body.cells[:, :4])
-    assert np.array_equal(coarser.fixed[corners], radius[corners] > 0.0323)
-    one, other = finer.contacts["outer"], coarser.contacts["outer"]
-    assert one is not None and other is not None
-    assert np.allclose(one["point"], other["point"], atol=1e-6)
-    assert other["element_size"] > 1.3 * one["element_size"]
+    own = result_of(path, "top", fixed=["rim"])
+    if size > 1.0:
+        body, fixed, contacts = remeshed(own.body, own.fixed, own.contacts, size, "plate")
+        assert 2.0 * body.cells.shape[0] < own.body.cells.shape[0]
+    else:
+        other = result_of(path, "top", 2.0, fixed=["rim"], materials={"all": "steel"})
+        assert other.about["size_factor"] == size
+        body, fixed, contacts = other.body, other.fixed, other.contacts
+        assert body.cells.shape[0] == 8 * own.body.cells.shape[0]
+    expected = volume(own.body.points, own.body.cells)
+    assert volume(body.points, body.cells) == pytest.approx(expected, rel=1e-2)
+    elements = {group.name: group.elements.size for group in body.groups}
+    assert elements["all"] == body.cells.shape[0]
+    radius = np.hypot(*body.points[:, :2].T)
+    assert radius[fixed].min() > 0.0323
+    # the whole rim, not more: all of the surface that is not flat at the top or the bottom
+    faces = body.skin.faces
+    rim = faces[np.ptp(body.points[faces[:, :3], 2], axis=1) > 1e-6]
+    assert np.array_equal(np.flatnonzero(fixed), np.unique(rim))
+    one, there = own.contacts["outer"], contacts["outer"]
+    assert one is not None and there is not None
+    assert np.allclose(one["point"], there["point"], atol=1e-6)
+    assert (there["element_size"] / one["element_size"] > 1.3) == (size > 1.0)
 
 
 def two_materials(path: Path) -> None:
