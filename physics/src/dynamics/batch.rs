@@ -328,7 +328,39 @@ fn sin_cos(x: f64x4) -> (f64x4, f64x4) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::kirchhoff;
+    use crate::dynamics::MovingBody;
+    use crate::scene::Scene;
     use approx::assert_relative_eq;
+
+    /// Going on from one interval to the next gives what the whole time gives, damped or fed by a circuit.
+    #[test]
+    fn a_march_passes_where_the_whole_step_passes() {
+        for text in [
+            include_str!("../../../scenes/scaled-plate-r10.toml"),
+            include_str!("../../../scenes/validation/damped-plate.toml"),
+            include_str!("../../../scenes/validation/stack.toml"),
+        ] {
+            let scene = Scene::parse("scene.toml", text).expect("valid");
+            let setup = scene.plate_impact().expect("a plate");
+            let bodies = MovingBody::both(&setup.outer, &setup.inner).expect("bodies");
+            let plate = kirchhoff::modes(&setup.plate, 16).expect("modes");
+            let (system, h) = (System::of(&bodies, &plate, &setup.plate.material, [0.0; 2]), 3e-6);
+            let batch = OscillatorBatch::new(&system);
+            let (q, v) = system.initial_state();
+            let (q, v) = (in_blocks(&q), in_blocks(&v));
+            let forces = [[300.0, 2e8, -1e14, 4e19], [-100.0, 5e7, 3e13, -2e19]];
+            let intervals = 40;
+            let samples = batch.approaches_within((&q, &v), &forces, h, intervals);
+            assert_eq!(samples.len(), intervals + 1);
+            for (k, sample) in samples.iter().enumerate().skip(1) {
+                let at = batch.approach_after((&q, &v), &forces, h * k as f64 / intervals as f64);
+                for (found, expected) in sample.iter().flatten().zip(at.iter().flatten()) {
+                    assert_relative_eq!(*found, *expected, max_relative = 1e-9, epsilon = 1e-18);
+                }
+            }
+        }
+    }
 
     #[test]
     fn sine_and_cosine_to_the_last_places() {
