@@ -11,13 +11,13 @@ import numpy as np
 
 from ..common.arrays import Floats, Ints
 from ..solid.mesh import EDGES
-from .tets import CHUNK
+from .tets import CHUNK, SAMPLES
 
 CORNERS = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3))
 """The tetrahedra at the corners, by the ten nodes of the old one."""
 DIAGONALS = (((4, 9), (5, 6, 7, 8)), ((5, 7), (4, 6, 9, 8)), ((6, 8), (4, 5, 9, 7)))
 """Diagonals of the octahedron, and the nodes around each, in order."""
-PLACES = np.array([*np.eye(4), *(0.5 * (np.eye(4)[a] + np.eye(4)[b]) for a, b in EDGES)])
+PLACES = SAMPLES[:10]
 """Barycentric coordinates of the ten nodes."""
 
 

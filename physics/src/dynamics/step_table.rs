@@ -47,12 +47,12 @@ impl StepTable {
             }
             self.coefficients[p] = std::array::from_fn(|l| scale * collocation.lagrange[l][p]);
         }
-        // answers of the approaches to forces tau^p / p! at all Gauss points, by pair of contacts and p
-        let mut answers_at = [[[0.0; STAGES]; STAGES]; 3];
+        let mut rows = [[[0.0; STAGES]; STAGES]; 3];
         for j in 0..STAGES {
             let t = collocation.nodes[j] * h;
             let powers = powers(t);
             let (slope, impulse) = self.oscillators[2 * j * n..][..2 * n].split_at_mut(n);
+            // answers of the approaches to forces tau^p / p!
             let mut answers = [[f64x4::ZERO; STAGES]; 3];
             for (k, block) in batch.blocks.iter().enumerate() {
                 let moments = block.moments(t, &powers);
@@ -70,19 +70,15 @@ impl StepTable {
                     answers[0][p] += fed.approach * displacement[p];
                 }
             }
-            for (answers_at, answers) in answers_at.iter_mut().zip(answers) {
-                for (answers_at, answer) in answers_at.iter_mut().zip(answers) {
-                    answers_at[j] = answer;
+            for (rows, answers) in rows.iter_mut().zip(answers) {
+                for p in 0..STAGES {
+                    for l in 0..STAGES {
+                        rows[l][j] += self.coefficients[p][l] * answers[p];
+                    }
                 }
             }
         }
-        self.coupling = answers_at.map(|answers| {
-            let answers = answers.map(f64x4::from);
-            std::array::from_fn(|l| {
-                let part = |sum, p: usize| sum + answers[p] * f64x4::splat(self.coefficients[p][l]);
-                (0..STAGES).fold(f64x4::ZERO, part)
-            })
-        });
+        self.coupling = rows.map(|columns| columns.map(f64x4::from));
         let powers = powers(h);
         for (k, block) in batch.blocks.iter().enumerate() {
             for (p, moment) in block.moments(h, &powers).into_iter().enumerate() {

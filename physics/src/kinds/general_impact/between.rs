@@ -139,7 +139,7 @@ impl Between {
     }
 }
 
-/// The system of `outer` that strikes `plate` beside its centre, behind which `inner` lies, on a mesh and on another one if there is one; and
+/// The system of `outer` that strikes `plate` off-centre, behind which `inner` lies, on a mesh and on another one if there is one; and
 /// what the user has to know of them.
 ///
 /// # Errors

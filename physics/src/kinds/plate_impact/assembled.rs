@@ -88,7 +88,7 @@ pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize) -> Result<Sys
     Ok(system)
 }
 
-/// Model C with `modes` modes, or all there are, of a plate that is struck beside its centre: as a body from a mesh; and the same on another
+/// Model C with `modes` modes, or all there are, of a plate that is struck off-centre: as a body from a mesh; and the same on another
 /// mesh.
 ///
 /// # Errors
