@@ -55,12 +55,12 @@ lint:
 	cargo fmt --all --check
 	cargo clippy --release --workspace --all-targets -- -D warnings
 
-# cargo sees that the file has changed, but not that it was made
+# cargo sees that the file has changed, but not that it was made; the compressed one gets the other's time
 live-page:
 	@rustup target add wasm32-unknown-unknown
-	@new=$$(test -f $(WASM) || echo yes); \
-	    cargo build --profile live --package impactcheck-live --target wasm32-unknown-unknown && \
-	    if [ -n "$$new" ]; then touch src/main.rs python/src/lib.rs; fi
+	@cargo build --profile live --package impactcheck-live --target wasm32-unknown-unknown
+	@if [ ! -f $(WASM).gz ] || [ $(WASM) -nt $(WASM).gz ]; then \
+	    gzip --best --no-name --keep --force $(WASM) && touch src/main.rs python/src/lib.rs; fi
 
 rust: lint
 	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --workspace --no-fail-fast $(if $(UNCHECKED),-E 'not test(/^$(UNCHECKED)/)'); \

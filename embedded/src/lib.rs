@@ -49,8 +49,8 @@ pub fn unit(_: TokenStream) -> TokenStream {
     .expect("Rust")
 }
 
-/// An expression of type `&[u8]`: the models for pages, as `make live-page` has compiled them; empty where it has not, or where they are of
-/// other [`sources`] than the program's.
+/// An expression of type `&[u8]`: the models for pages, compressed by gzip, as `make live-page` has made them; empty where it has not, or where
+/// they are of other [`sources`] than the program's.
 #[proc_macro]
 pub fn live(_: TokenStream) -> TokenStream {
     let arguments: Vec<String> = std::env::args().collect();
@@ -62,11 +62,14 @@ pub fn live(_: TokenStream) -> TokenStream {
     let mark = mark_of_sources();
     let bytes = fs::read(&path).unwrap_or_default();
     let is_current = bytes.windows(mark.len()).any(|part| part == mark.as_bytes());
-    let included = format!("include_bytes!({:?}).as_slice()", path.display().to_string());
-    let expression = match is_current {
-        true => included,
+    let packed = path.with_extension("wasm.gz");
+    let modified = |path: &Path| fs::metadata(path).and_then(|file| file.modified()).ok();
+    let is_packed = modified(&packed).is_some_and(|time| Some(time) >= modified(&path));
+    let included = |path: &Path| format!("include_bytes!({:?}).as_slice()", path.display().to_string());
+    let expression = match is_current && is_packed {
+        true => included(&packed),
         // named, so that cargo builds again when it has changed
-        false => format!("{{ const _: &[u8] = {included}; &[] }}"),
+        false => format!("{{ const _: &[u8] = {}; &[] }}", included(&path)),
     };
     expression.parse().expect("Rust")
 }

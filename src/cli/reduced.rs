@@ -9,7 +9,7 @@ use crate::format::{self, prefixed, with_unit};
 use crate::kinds::SharedBodies;
 use crate::prediction::{Interval, Prediction};
 use crate::report::{self, history_format};
-use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Sideways, Summary};
+use crate::result::{ContactPressure, ElasticLimit, Impact, Outcome, Quantity, Summary};
 use crate::scene::Scene;
 use clap::Args;
 use std::collections::BTreeMap;
@@ -118,7 +118,7 @@ pub fn table(summary: &Summary, has: impl Fn(&str) -> bool) -> String {
         lines.push(format!("  {name:<24} {:>14}{band}", with_unit(value, to, 6)));
     }
     let friction = summary.friction_work.map(|work| ("friction_work", work, "J"));
-    for (name, value, unit) in summary.sideways.iter().flat_map(Sideways::rows).chain(friction) {
+    for (name, value, unit) in summary.motion().chain(friction) {
         let to = prefixed(unit, value);
         let band = summary.band(name).map_or_else(String::new, |u| format!(" ± {}", with_unit(u, to, 2)));
         lines.push(format!("  {name:<32} {:>14}{band}", with_unit(value, to, 6)));

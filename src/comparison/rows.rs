@@ -18,7 +18,7 @@ pub(super) fn rows(
     let kind = kinds::of(scene);
     let (m, c) = (&reference.summary, &reduced.summary);
     let mut rows = quantities(kind, reference, c, tolerances);
-    rows.extend(sideways(m, c));
+    rows.extend(motion(m, c));
     rows.extend(impacts::rows(m, c, tolerances));
     rows.extend(landing::row([flight, c.flight.as_ref()], tolerances));
     let curves: Vec<Curve> = kind.curves().iter().filter(|c| kind.has(scene, c.name)).cloned().collect();
@@ -55,18 +55,18 @@ fn quantities(
 }
 
 /// The rows of the motion along the surfaces, if both sides have it; relative to the largest velocity and spin of the reference.
-fn sideways(reference: &Summary, reduced: &Summary) -> Vec<Discrepancy> {
-    let (Some(reference_motion), Some(motion)) = (&reference.sideways, &reduced.sideways) else {
+fn motion(reference: &Summary, reduced: &Summary) -> Vec<Discrepancy> {
+    if reduced.motion().next().is_none() {
         return Vec::new();
-    };
+    }
     let row = |(name, value, unit): (&'static str, f64, &'static str)| {
-        let of_unit = reference_motion.rows().filter(|row| row.2 == unit);
+        let of_unit = reference.motion().filter(|row| row.2 == unit);
         let scale = of_unit.map(|row| row.1.abs()).fold(0.0, f64::max);
-        let own = motion.rows().find(|row| row.0 == name).map(|row| row.1);
+        let own = reduced.motion().find(|row| row.0 == name).map(|row| row.1);
         let scales = Scales { value: scale, peak: scale };
         Discrepancy::new((name, unit), (own, Some(value)), scales, None, reference.band(name))
     };
-    reference_motion.rows().map(row).collect()
+    reference.motion().map(row).collect()
 }
 
 /// The rows of root mean square and largest distance of every curve; NaN where it can't be measured, undetermined where

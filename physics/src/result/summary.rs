@@ -137,6 +137,9 @@ pub struct Summary {
     /// Off-centre impacts (references), those at an angle or with spin, unless the run was cut during a contact.
     #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
     pub sideways: Option<Sideways>,
+    /// Rough seal seats: spin of the sphere about y after its last contact in rad/s, positive from z to x.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sphere_spin: Option<f64>,
     /// Reduced models whose bodies rub: energy that friction dissipates, J.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction_work: Option<f64>,
@@ -220,6 +223,12 @@ impl Summary {
         self.quantities.value(name)
     }
 
+    /// Name, value and unit of what says how bodies move along the surfaces they touch, and turn.
+    pub fn motion(&self) -> impl Iterator<Item = (&'static str, f64, &'static str)> + use<'_> {
+        let spin = self.sphere_spin.map(|spin| ("sphere_spin", spin, "rad/s"));
+        self.sideways.iter().flat_map(Sideways::rows).chain(spin)
+    }
+
     /// Half width of the 95 % band of the quantity called `name`, if it is known.
     pub fn band(&self, name: &str) -> Option<f64> {
         self.uncertainty.get(name).copied()
@@ -271,6 +280,7 @@ impl Summary {
             solve_seconds: 0.0,
             failure: None,
             sideways: None,
+            sphere_spin: None,
             friction_work: None,
             bender: None,
             stack: None,

@@ -36,7 +36,7 @@ const SAMPLES: usize = 400;
 /// Significant digits of them.
 const DIGITS: usize = 5;
 
-/// The models, compiled to WebAssembly; empty where they were not built.
+/// The models, compiled to WebAssembly and compressed by gzip; empty where they were not built.
 static MODELS: OnceLock<&[u8]> = OnceLock::new();
 
 /// Gives the program the models that it puts into pages. For programs, called once.
@@ -142,7 +142,11 @@ fn packed(bytes: &[u8]) -> Result<String> {
     let failed = |e: std::io::Error| Error::Internal(format!("compressing for the live page: {e}"));
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(bytes).map_err(failed)?;
-    Ok(base64::engine::general_purpose::STANDARD.encode(encoder.finish().map_err(failed)?))
+    Ok(base64(&encoder.finish().map_err(failed)?))
+}
+
+fn base64(bytes: &[u8]) -> String {
+    base64::engine::general_purpose::STANDARD.encode(bytes)
 }
 
 /// The page of `scenes`, with the scenes in which models were `validated`.
@@ -167,7 +171,7 @@ pub fn live_page(scenes: &[LiveScene], validated: &[Validation]) -> Result<Strin
     });
     let scripts = html! {
         script type="application/json" id="live" { (PreEscaped(embedded(&document))) }
-        script type="text/plain" id="models" { (packed(models)?) }
+        script type="text/plain" id="models" { (base64(models)) }
         script type="text/plain" id="worker" { (PreEscaped(WORKER)) }
         script { (PreEscaped(plotting())) }
         script { (PreEscaped(DRAWINGS)) }

@@ -13,6 +13,7 @@
 //! From one instant to the next only candidates with a small gap are watched; [`ContactProblem::survey`] looks at all and tells
 //! whether one has been missed.
 
+use super::friction::Friction;
 use super::nodes::{Ball, Nodes};
 use super::traces::{Push, Traces};
 use super::watch::Watch;
@@ -41,6 +42,8 @@ pub struct Loads {
     pub(super) normal: Vec<Vector3<f64>>,
     /// What a body that relaxes remembers of the forces before.
     pub(super) traces: Option<Traces>,
+    /// Tangential forces, where the seat is rough.
+    pub(super) friction: Option<Friction>,
 }
 
 /// The contact problem and its last solution.
@@ -91,12 +94,19 @@ pub struct Work {
     pub watched: u64,
     /// Nodes in contact, summed over the Newton steps.
     pub loaded: u64,
+    /// Passes over all nodes for their tangential forces.
+    pub passes: u64,
 }
 
 impl<'a> ContactProblem<'a> {
     /// The problem of `nodes`, without forces, where contacts indent by about `indentation` in m: what is small goes by that. A body
-    /// that relaxes remembers `traces`. Before the first solution there has to be a survey.
-    pub fn new(nodes: &'a Nodes, indentation: f64, traces: Option<Traces>) -> Self {
+    /// that relaxes remembers `traces`, a rough one has `friction`. Before the first solution there has to be a survey.
+    pub(super) fn new(
+        nodes: &'a Nodes,
+        indentation: f64,
+        traces: Option<Traces>,
+        friction: Option<Friction>,
+    ) -> Self {
         let n = nodes.len();
         Self {
             nodes,
@@ -106,6 +116,7 @@ impl<'a> ContactProblem<'a> {
                 force: vec![0.0; n],
                 normal: vec![Vector3::zeros(); n],
                 traces,
+                friction,
             },
             watch: Watch::none(n),
             gap: vec![0.0; n],
@@ -135,14 +146,18 @@ impl<'a> ContactProblem<'a> {
         self.loads.force[candidate]
     }
 
-    /// Unit vector along which the force on the elastic body acts at a candidate in contact.
-    pub fn normal(&self, candidate: usize) -> Vector3<f64> {
-        self.loads.normal[candidate]
-    }
-
     /// Force vector in N on the elastic body at a candidate.
     pub fn force_vector(&self, candidate: usize) -> Vector3<f64> {
-        self.loads.force[candidate] * self.loads.normal[candidate]
+        let normal = self.loads.force[candidate] * self.loads.normal[candidate];
+        self.loads.friction.as_ref().map_or(normal, |friction| normal + friction.force[candidate])
+    }
+
+    /// Torque in N m about y on the ball that a candidate meets.
+    pub fn torque(&self, candidate: usize) -> f64 {
+        self.loads.friction.as_ref().map_or(0.0, |friction| {
+            let (offset, on_ball) = (self.watch.off_centre(candidate).0, -friction.force[candidate]);
+            offset.z * on_ball.x - offset.x * on_ball.z
+        })
     }
 
     /// Elastic energy in J that the residual flexibility holds; of one that relaxes, with what it has lost.
@@ -157,6 +172,11 @@ impl<'a> ContactProblem<'a> {
     /// Energy in J that contact nodes that relax have taken; all of it is lost once they carry no force and have recovered.
     pub fn relaxed(&self) -> f64 {
         self.loads.traces.as_ref().map_or(0.0, |traces| traces.work)
+    }
+
+    /// Energy in J that friction has dissipated.
+    pub fn rubbed(&self) -> f64 {
+        self.loads.friction.as_ref().map_or(0.0, Friction::dissipated)
     }
 
     /// Largest displacement in m that forces have left to any candidate; 0 of an elastic body.
@@ -175,8 +195,9 @@ impl<'a> ContactProblem<'a> {
         }
     }
 
-    /// Ends a step whose forces have been found: a body that relaxes books their work.
-    pub fn book(&mut self) {
+    /// Ends a step whose forces have been found: a body that relaxes books their work, a rough one that of friction.
+    pub fn book(&mut self, balls: &[Ball]) {
+        self.book_friction(balls);
         if self.loads.traces.is_some() {
             self.collect_push();
         }
@@ -200,6 +221,14 @@ impl<'a> ContactProblem<'a> {
     /// # Errors
     /// [`Error::Solver`] if the residual is not positive definite or no solution is found.
     pub fn solve(&mut self, modal: &[f64], balls: &[Ball]) -> Result<()> {
+        match self.loads.friction {
+            Some(_) => self.solve_with_friction(modal, balls),
+            None => self.solve_normal(modal, balls),
+        }
+    }
+
+    /// Finds the normal forces, with the tangential ones as they are.
+    pub(super) fn solve_normal(&mut self, modal: &[f64], balls: &[Ball]) -> Result<()> {
         self.work.solutions += 1;
         self.work.watched += self.watch.len() as u64;
         let (mut fewest, mut patience, mut last) = (usize::MAX, PATIENCE, f64::INFINITY);
@@ -246,7 +275,7 @@ impl<'a> ContactProblem<'a> {
     }
 
     /// Lets the residual yield in the slots from `known` to `end`; how many are known then.
-    fn deform_from(&mut self, known: usize, end: usize) -> usize {
+    pub(super) fn deform_from(&mut self, known: usize, end: usize) -> usize {
         if known < end {
             self.collect_push();
             self.watch.deform_under(self.nodes, &self.push, known..end);
@@ -279,8 +308,9 @@ impl<'a> ContactProblem<'a> {
     /// The forces on the body at the contact set.
     pub(super) fn collect_push(&mut self) {
         self.push.clear();
-        let (normal, force) = (&self.loads.normal, &self.loads.force);
-        self.push.extend(self.loads.active.iter().map(|&j| (j, force[j] * normal[j])));
+        for &j in &self.loads.active {
+            self.push.push((j, self.force_vector(j)));
+        }
     }
 
     /// Newton step on the contact set.
@@ -356,13 +386,13 @@ mod tests {
         let mut in_contact = 0;
         for n in [1, 2, 5, 12, 40] {
             let (nodes, residual) = nodes(n, &mut random);
-            let mut contact = ContactProblem::new(&nodes, INDENTATION, None);
-            let far = [Ball { centre: Vector3::new(0.0, 0.0, -20.0), radius: 10.0 }];
+            let mut contact = ContactProblem::new(&nodes, INDENTATION, None, None);
+            let far = [Ball { centre: Vector3::new(0.0, 0.0, -20.0), radius: 10.0, turn: 0.0 }];
             contact.survey(&vec![0.0; 3 * n], &far, f64::INFINITY);
             // one sequence of instants: each starts from the last, deeper or shallower
             for height in [0.0, 0.01, 0.08, 0.06, 0.2, 0.02, -0.5, 0.05] {
                 let modal: Vec<f64> = (0..3 * n).map(|_| 0.02 * (random.f64() - 0.5)).collect();
-                let ball = Ball { centre: Vector3::new(0.0, 0.0, height - 10.0), radius: 10.0 };
+                let ball = Ball { centre: Vector3::new(0.0, 0.0, height - 10.0), radius: 10.0, turn: 0.0 };
                 contact.solve(&modal, &[ball]).expect("solution");
                 let force: Vec<f64> =
                     (0..n).flat_map(|i| <[f64; 3]>::from(contact.force_vector(i))).collect();
@@ -389,9 +419,10 @@ mod tests {
     fn a_survey_finds_what_was_not_watched() {
         let mut random = fastrand::Rng::with_seed(5);
         let (nodes, _) = nodes(20, &mut random);
-        let mut contact = ContactProblem::new(&nodes, INDENTATION, None);
+        let mut contact = ContactProblem::new(&nodes, INDENTATION, None, None);
         let modal = vec![0.0; 60];
-        let ball = |height: f64| [Ball { centre: Vector3::new(0.0, 0.0, height - 10.0), radius: 10.0 }];
+        let ball =
+            |height: f64| [Ball { centre: Vector3::new(0.0, 0.0, height - 10.0), radius: 10.0, turn: 0.0 }];
         contact.survey(&modal, &ball(-0.1), f64::INFINITY);
         contact.solve(&modal, &ball(-0.1)).expect("apart");
         // none is near: none is watched

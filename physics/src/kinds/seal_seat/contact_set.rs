@@ -2,6 +2,7 @@
 
 use super::contact::ContactProblem;
 use crate::error::{Error, Result};
+use nalgebra::Vector3;
 
 /// Rows that the factor takes up or loses, beyond a sixteenth of it, before it is rather made anew.
 const UPDATES: usize = 4;
@@ -84,6 +85,9 @@ impl ContactProblem<'_> {
         }
         for &i in self.loads.active.iter().filter(|&&i| self.wrong[i]) {
             self.loads.force[i] = 0.0;
+            if let Some(friction) = &mut self.loads.friction {
+                friction.force[i] = Vector3::zeros();
+            }
         }
         self.previous.clone_from(&self.loads.active);
         self.loads.active.clear();

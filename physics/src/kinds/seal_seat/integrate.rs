@@ -162,6 +162,7 @@ impl<'a> SealSeatRun<'a> {
         for (v, f) in self.state.sphere_velocity.iter_mut().zip(self.forces.sphere) {
             *v += step * f / self.system.sphere_mass;
         }
+        self.state.spin += step * self.forces.torque / self.system.sphere_inertia;
         self.state.actuator_velocity += step * self.forces.actuator / self.system.actuator_mass;
         for (impulse, force) in self.tally.flank_impulse.iter_mut().zip(self.forces.flanks) {
             *impulse += 2.0 * step * force;
@@ -174,6 +175,7 @@ impl<'a> SealSeatRun<'a> {
         for (x, v) in self.state.sphere.iter_mut().zip(self.state.sphere_velocity) {
             *x += step * v;
         }
+        self.state.turn += step * self.state.spin;
         self.state.actuator += step * self.state.actuator_velocity;
     }
 
@@ -252,11 +254,13 @@ impl<'a> SealSeatRun<'a> {
         let start = system.actuator_mass * system.speed;
         let left =
             system.actuator_mass * state.actuator_velocity + system.sphere_mass * state.sphere_velocity[1];
-        let energy = self.workspace.energy(system, state) + self.tally.modal_loss;
+        let rubbed = self.workspace.contact.rubbed();
+        let energy = self.workspace.energy(system, state) + self.tally.modal_loss + rubbed;
         Integration {
             stop: StopReason::of(self.tally.before[0].iter().any(|force| *force > 0.0)),
             momentum_residual: (left + self.tally.seat_impulse - start).abs() / start,
             energy_residual: (energy - self.start_energy).abs() / self.start_energy,
+            rubbed: 2.0 * rubbed,
             relaxed: 2.0 * (self.tally.modal_loss + self.workspace.contact.relaxed()),
             time: self.time(),
             work: self.workspace.contact.work,
@@ -322,12 +326,14 @@ mod tests {
                 right_flank: false,
             }],
             sphere_mass: 1e-4,
+            sphere_inertia: 4e-11,
+            friction: 0.0,
             actuator_mass: MASS,
             speed: SPEED,
             indentation: SPEED * (MASS * FLEXIBILITY).sqrt(),
             balls: vec![
-                Ball { centre: Vector3::new(0.0, 0.0, 1.0), radius: 1e-3 },
-                Ball { centre: Vector3::new(0.0, 0.0, -3e-3), radius: 3e-3 },
+                Ball { centre: Vector3::new(0.0, 0.0, 1.0), radius: 1e-3, turn: 0.0 },
+                Ball { centre: Vector3::new(0.0, 0.0, -3e-3), radius: 3e-3, turn: 0.0 },
             ],
         }
     }

@@ -59,6 +59,8 @@ pub struct Integration {
     pub momentum_residual: f64,
     /// Energy in J that the seat has lost to relaxation.
     pub relaxed: f64,
+    /// Energy in J that friction has dissipated.
+    pub rubbed: f64,
     /// End of the run in s.
     pub time: f64,
     /// Samples, if asked for.

@@ -2,7 +2,7 @@
 //! and actuator, unilateral contact at the nodes of the seat's mesh.
 //!
 //! Without friction the sphere's rotation idles: it has no torque, and of the three degrees of freedom in the plane two
-//! move.
+//! move. On a rough seat it turns.
 
 mod accumulate;
 mod body;
@@ -12,6 +12,7 @@ pub mod contact;
 mod contact_set;
 mod doubts;
 mod drift;
+mod friction;
 pub mod integrate;
 pub mod integration;
 mod limits;
@@ -85,7 +86,7 @@ impl super::Kind for Kind {
     fn launch(&self, summary: &Summary) -> Option<Launch> {
         let [x, z] = ["sphere_velocity_x", "sphere_velocity_z"].map(|name| summary.value(name));
         let (x, z) = (x?, z?);
-        Some(Launch { speed: x.hypot(z), angle: x.atan2(z), spin: 0.0 })
+        Some(Launch { speed: x.hypot(z), angle: x.atan2(z), spin: summary.sphere_spin.unwrap_or(0.0) })
     }
 
     fn checks(&self, scene: &Scene, outcome: &Outcome) -> Vec<Statement> {

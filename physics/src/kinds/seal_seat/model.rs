@@ -255,6 +255,10 @@ impl SeatModel {
         })
     }
 
+    fn is_rough(&self) -> bool {
+        self.system.friction > 0.0
+    }
+
     fn summary(&self, result: &Integration, tolerance: f64, solve_seconds: f64) -> Result<Summary> {
         let mut table = quantities(&self.system, result).table();
         let mut warnings = self.warnings.clone();
@@ -273,6 +277,8 @@ impl SeatModel {
             steps: Some(result.tally.steps),
             solve_seconds,
             truncation_error: Some(error),
+            sphere_spin: self.is_rough().then_some(result.state.spin),
+            friction_work: self.is_rough().then_some(result.rubbed),
             losses: (!self.system.relaxation.is_empty())
                 .then(|| Losses { bodies: Some([0.0, result.relaxed, 0.0]), ..Losses::default() }),
             warnings,

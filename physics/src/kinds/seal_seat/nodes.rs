@@ -9,6 +9,8 @@ pub struct Ball {
     pub centre: Vector3<f64>,
     /// Radius in m.
     pub radius: f64,
+    /// Turn about y since the start in rad.
+    pub turn: f64,
 }
 
 /// The nodes that may be touched: an elastic body as seen from them.

@@ -45,7 +45,11 @@ impl ContactProblem<'_> {
             active += usize::from(in_contact);
             let ball = &balls[nodes.ball[i]];
             let displaced = Vector3::from_fn(|c, _| self.displaced[c * n + i]);
-            let distance = (nodes.place[i] + displaced - ball.centre).norm();
+            let offset = nodes.place[i] + displaced - ball.centre;
+            if let Some(friction) = &mut self.loads.friction {
+                friction.put(i, offset);
+            }
+            let distance = offset.norm();
             let gap = if in_contact { 0.0 } else { distance - ball.radius };
             let passed = !self.watch.contains(i) && gap < -self.closed;
             survey.missed |= passed;

@@ -5,6 +5,7 @@
 use super::SealSeat;
 use super::candidates::{Candidate, ContactBody, on_half_space};
 use super::contact::ContactProblem;
+use super::friction::Friction;
 use super::nodes::{Ball, Nodes};
 use super::survey::Survey;
 use super::traces::Traces;
@@ -26,6 +27,8 @@ pub struct System {
     pub candidates: Vec<Candidate>,
     /// Half the sphere's mass in kg.
     pub sphere_mass: f64,
+    /// Half its moment of inertia in kg m^2.
+    pub sphere_inertia: f64,
     /// Half the actuator's mass in kg.
     pub actuator_mass: f64,
     /// Speed of the actuator at the start in m/s.
@@ -36,6 +39,8 @@ pub struct System {
     pub balls: Vec<Ball>,
     /// The candidates as the contact problem has them.
     pub nodes: Nodes,
+    /// Coulomb's coefficient of friction of the seat with sphere and tips.
+    pub friction: f64,
 }
 
 impl System {
@@ -54,15 +59,14 @@ impl System {
         }
         let residual = body.residual(modes)?;
         let [x, z] = scene.ring().sphere_centre;
-        let mut balls = vec![Ball { centre: Vector3::new(x, 0.0, z), radius: scene.sphere.radius }];
+        let mut balls =
+            vec![Ball { centre: Vector3::new(x, 0.0, z), radius: scene.sphere.radius, turn: 0.0 }];
         let radius = scene.actuator.tip_radius;
-        balls.extend(
-            scene
-                .actuator
-                .tip_positions
-                .iter()
-                .map(|&x| Ball { centre: Vector3::new(x, 0.0, -radius), radius }),
-        );
+        balls.extend(scene.actuator.tip_positions.iter().map(|&x| Ball {
+            centre: Vector3::new(x, 0.0, -radius),
+            radius,
+            turn: 0.0,
+        }));
         let ball = |candidate: &Candidate| match candidate.contact_body {
             ContactBody::Sphere => 0,
             ContactBody::Tip(tip) => 1 + tip,
@@ -74,6 +78,8 @@ impl System {
             relaxation: scene.seat.material.relaxation.clone(),
             candidates: candidates.to_vec(),
             sphere_mass: 0.5 * scene.sphere.mass,
+            sphere_inertia: 0.5 * 0.4 * scene.sphere.mass * scene.sphere.radius.powi(2),
+            friction: scene.friction,
             actuator_mass: 0.5 * scene.actuator.mass,
             speed: scene.actuator.speed,
             indentation: on_half_space(scene).approach_peak(),
@@ -103,6 +109,8 @@ impl System {
             relaxed: vec![0.0; modes * self.relaxation.len()],
             sphere: [0.0; 2],
             sphere_velocity: [0.0; 2],
+            turn: 0.0,
+            spin: 0.0,
             actuator: 0.0,
             actuator_velocity: self.speed,
         }
@@ -122,6 +130,10 @@ pub struct State {
     pub sphere: [f64; 2],
     /// Its velocity in m/s.
     pub sphere_velocity: [f64; 2],
+    /// Its turn about y in rad, from z to x.
+    pub turn: f64,
+    /// Its spin in rad/s.
+    pub spin: f64,
     /// Displacement of the actuator along z in m.
     pub actuator: f64,
     /// Its velocity in m/s.
@@ -135,6 +147,8 @@ pub struct Forces {
     pub modal: Vec<f64>,
     /// Force on the sphere along x and z in N.
     pub sphere: [f64; 2],
+    /// Torque on it about y in N m.
+    pub torque: f64,
     /// Force on the actuator along z in N: not positive.
     pub actuator: f64,
     /// Force on the seat along z in N.
@@ -149,13 +163,13 @@ impl Forces {
     fn clear(&mut self, modes: usize) {
         self.modal.clear();
         self.modal.resize(modes, 0.0);
-        (self.sphere, self.actuator, self.seat) = ([0.0; 2], 0.0, 0.0);
+        (self.sphere, self.torque, self.actuator, self.seat) = ([0.0; 2], 0.0, 0.0, 0.0);
         (self.flanks, self.reach) = ([0.0; 2], [0.0; 2]);
     }
 
-    /// Adds the normal force `force` in N at candidate `i`.
-    fn add(&mut self, system: &System, i: usize, normal: Vector3<f64>, force: f64) {
-        let (f, candidate) = (force * normal, &system.candidates[i]);
+    /// Adds the force `f` in N on the seat at candidate `i`, of which `normal` is along the normal.
+    fn add(&mut self, system: &System, i: usize, f: Vector3<f64>, normal: f64) {
+        let candidate = &system.candidates[i];
         for (sum, shape) in self.modal.iter_mut().zip(&system.participation) {
             *sum += shape[3 * i] * f[0] + shape[3 * i + 1] * f[1] + shape[3 * i + 2] * f[2];
         }
@@ -164,7 +178,7 @@ impl Forces {
             ContactBody::Sphere => {
                 self.sphere[0] -= f[0];
                 self.sphere[1] -= f[2];
-                self.flanks[usize::from(candidate.right_flank)] += force;
+                self.flanks[usize::from(candidate.right_flank)] += normal;
             }
             ContactBody::Tip(_) => self.actuator -= f[2],
         }
@@ -184,8 +198,10 @@ pub struct Workspace<'a> {
 impl<'a> Workspace<'a> {
     /// Room for `system`, which yields within a step as `nodes` do, and remembers `traces` if it relaxes.
     pub fn new(system: &System, nodes: &'a Nodes, traces: Option<Traces>) -> Self {
+        let rough = system.friction > 0.0;
+        let friction = rough.then(|| Friction::new(system.friction, nodes.len(), system.balls.len()));
         Self {
-            contact: ContactProblem::new(nodes, system.indentation, traces),
+            contact: ContactProblem::new(nodes, system.indentation, traces, friction),
             accelerations: Vec::new(),
             balls: system.balls.clone(),
         }
@@ -200,12 +216,16 @@ impl<'a> Workspace<'a> {
     pub fn forces(&mut self, system: &System, state: &State, step: f64, forces: &mut Forces) -> Result<()> {
         self.place(system, state);
         self.contact.solve(&state.modal, &self.balls)?;
-        self.contact.book();
+        self.contact.book(&self.balls);
         forces.clear(system.omega.len());
         for &i in self.contact.active() {
-            let (normal, force) = (self.contact.normal(i), self.contact.force(i));
-            forces.add(system, i, normal, force);
-            let contact_body = usize::from(system.candidates[i].contact_body != ContactBody::Sphere);
+            let force = self.contact.force(i);
+            forces.add(system, i, self.contact.force_vector(i), force);
+            let on_sphere = system.candidates[i].contact_body == ContactBody::Sphere;
+            if on_sphere {
+                forces.torque += self.contact.torque(i);
+            }
+            let contact_body = usize::from(!on_sphere);
             if force > 0.0 {
                 forces.reach[contact_body] = forces.reach[contact_body].max(system.candidates[i].offset);
             }
@@ -232,7 +252,7 @@ impl<'a> Workspace<'a> {
             }
             shift * normal.dot(&a)
         };
-        contact.respond(opening, |i, normal, change| forces.add(system, i, normal, change));
+        contact.respond(opening, |i, normal, change| forces.add(system, i, change * normal, change));
     }
 
     /// Looks at all candidates at `state`, whose forces have been evaluated: see [`ContactProblem::survey`].
@@ -247,6 +267,7 @@ impl<'a> Workspace<'a> {
             if number == 0 {
                 ball.centre[0] = start.centre[0] + state.sphere[0];
                 ball.centre[2] = start.centre[2] + state.sphere[1];
+                ball.turn = state.turn;
             } else {
                 ball.centre[2] = start.centre[2] + state.actuator;
             }
@@ -261,7 +282,8 @@ impl<'a> Workspace<'a> {
         let relaxing: f64 =
             relaxed.enumerate().map(|(k, xi)| system.relaxed_energy(k, state.modal[k], xi)).sum();
         let sphere = 0.5 * system.sphere_mass * state.sphere_velocity.iter().map(|v| v * v).sum::<f64>();
+        let turning = 0.5 * system.sphere_inertia * state.spin.powi(2);
         let actuator = 0.5 * system.actuator_mass * state.actuator_velocity.powi(2);
-        modal + relaxing + sphere + actuator + self.contact.energy()
+        modal + relaxing + sphere + turning + actuator + self.contact.energy()
     }
 }

@@ -106,7 +106,7 @@ pub struct SealSeat {
     pub sphere: SeatedSphere,
     /// The actuator.
     pub actuator: Actuator,
-    /// Coulomb's coefficient of friction of the seat with sphere and tips; the reference alone knows it.
+    /// Coulomb's coefficient of friction of the seat with sphere and tips.
     #[serde(skip_serializing_if = "is_zero")]
     pub friction: f64,
     /// Intended direction of the sphere's flight against z in rad, positive towards +x.
