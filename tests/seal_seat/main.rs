@@ -1,6 +1,7 @@
 //! Tests of the flexible seal seat's scene, reduced model and stored references.
 
 mod compared;
+mod friction;
 mod reduced;
 mod reference;
 mod relaxing;

@@ -206,6 +206,7 @@ pub fn summary(impact: &Impact, source: Source) -> Summary {
         convergence: None,
         mesh: None,
         sideways: None,
+        sphere_spin: None,
         friction_work: None,
         bender: None,
         stack: None,

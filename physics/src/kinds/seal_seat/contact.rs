@@ -357,13 +357,13 @@ impl<'a> ContactProblem<'a> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     const INDENTATION: f64 = 0.3;
 
     /// Nodes on a plane above a ball of radius 10 that rises through it, with a random flexibility.
-    fn nodes(n: usize, random: &mut fastrand::Rng) -> (Nodes, Vec<f64>) {
+    pub fn nodes(n: usize, random: &mut fastrand::Rng) -> (Nodes, Vec<f64>) {
         let place =
             (0..n).map(|_| Vector3::new(2.0 * random.f64() - 1.0, 2.0 * random.f64() - 1.0, 0.0)).collect();
         let m = 3 * n;

@@ -33,6 +33,8 @@ const LEDGER: f64 = 0.1;
 const LEAST_RESIDUAL: f64 = 1e-6;
 /// Halvings of the step before the tolerance is given up.
 const HALVINGS: u32 = 12;
+/// Largest coefficient of friction: no contact of two solids has more.
+const MOST_FRICTION: f64 = 3.0;
 /// Widenings of the zones of contact candidates before the mesh is given up.
 const WIDENINGS: u32 = 8;
 
@@ -109,13 +111,20 @@ impl SeatModel {
             )));
         }
         let modes = modes.or(scene.reduced.modes).unwrap_or(DEFAULT_MODES);
+        if setup.friction > MOST_FRICTION {
+            return Err(Error::Usage(format!(
+                "scene `{}`: friction is {}; model C of a seal seat takes at most {MOST_FRICTION}, since normal and tangential forces do not converge above: \
+                 the reference does not need that",
+                scene.name, setup.friction
+            )));
+        }
         if modes == 0 {
             return Err(Error::Usage("--modes 0: at least one mode is needed".into()));
         }
         for _ in 0..WIDENINGS {
             let seat = build(&zones, modes)?;
             let built = Self::with(scene, setup, mesh, &seat, modes)?;
-            let predictor = built.integrate(built.first_step, false)?;
+            let predictor = built.integrate(built.first_step, DEFAULT_TOLERANCE, false)?;
             let wider = zones.widened(predictor.tally.reach).map_or(zones, |wider| wider.at_most(setup));
             if wider == zones {
                 let (predictor, setup_seconds) = (predictor.state.sphere_velocity, started.seconds());
@@ -170,26 +179,26 @@ impl SeatModel {
         self.first_step
     }
 
-    /// Runs the impact with a fixed time step in s.
+    /// Runs the impact with a fixed time step in s; the forces of friction are those of a relative `tolerance`.
     ///
     /// # Errors
     /// As [`integrate`].
-    pub fn integrate(&self, step: f64, history: bool) -> Result<Integration> {
-        self.integrate_of(&self.system, step, history)
+    pub fn integrate(&self, step: f64, tolerance: f64, history: bool) -> Result<Integration> {
+        self.integrate_of(&self.system, step, tolerance, history)
     }
 
-    fn integrate_of(&self, system: &System, step: f64, history: bool) -> Result<Integration> {
+    fn integrate_of(&self, system: &System, step: f64, tolerance: f64, history: bool) -> Result<Integration> {
         let step = match self.end_time {
             // whole steps to the end
             Some(end) => end / (end / step).ceil(),
             None => step,
         };
-        integrate(system, &Options { step, end_time: self.end_time, history })
+        integrate(system, &Options { step, end_time: self.end_time, history, tolerance })
     }
 
     /// Runs the impact; the step is halved until the sphere's velocity changes by less than three times `tolerance`
     /// of its magnitude, of which the finer run has a third as its error (second order), and the energy by less than a tenth of
-    /// it.
+    /// it; on a rough seat by less than `tolerance` (first order).
     ///
     /// # Errors
     /// As [`integrate`] and [`balance_check`]; [`Error::Solver`] if the tolerance can't be reached.
@@ -210,7 +219,7 @@ impl SeatModel {
         let started = Stopwatch::start();
         let (result, step) = self.converged(tolerance)?;
         let mut summary = self.summary(&result, tolerance, started.seconds())?;
-        let history = history(&self.integrate(step, true)?);
+        let history = history(&self.integrate(step, tolerance, true)?);
         summary.samples = Some(history.len());
         Kind.judge(&self.scene, &mut summary, Some(&history));
         self.add_flight(&mut summary)?;
@@ -219,14 +228,16 @@ impl SeatModel {
 
     /// The first result that meets the tolerance, and its step.
     fn converged(&self, tolerance: f64) -> Result<(Integration, f64)> {
+        // of second order, or of first at least
+        let share = if self.is_rough() { 1.0 } else { 3.0 };
         let (mut step, mut coarse) = (self.first_step, self.predictor);
         for _ in 0..HALVINGS {
             step *= 0.5;
-            let result = self.integrate(step, false)?;
+            let result = self.integrate(step, tolerance, false)?;
             let fine = result.state.sphere_velocity;
             let change = (coarse[0] - fine[0]).hypot(coarse[1] - fine[1]);
             let balanced = result.energy_residual <= (LEDGER * tolerance).max(LEAST_RESIDUAL);
-            if balanced && change <= 3.0 * tolerance * fine[0].hypot(fine[1]) {
+            if balanced && change <= share * tolerance * fine[0].hypot(fine[1]) {
                 return Ok((result, step));
             }
             coarse = fine;
@@ -264,7 +275,7 @@ impl SeatModel {
         let mut warnings = self.warnings.clone();
         warnings.extend(doubts::of_contacts(&self.system, result));
         let step = result.time / result.tally.steps as f64;
-        let error = truncation::estimate(result, &self.integrate_of(&self.half, step, false)?);
+        let error = truncation::estimate(result, &self.integrate_of(&self.half, step, tolerance, false)?);
         warnings.extend(truncation::warning(error, self.system.omega.len()));
         warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if result.stop == StopReason::Cut {

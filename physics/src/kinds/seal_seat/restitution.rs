@@ -42,7 +42,11 @@ impl SeatModel {
             actuator_velocity: 0.0,
             ..system.start()
         };
-        let result = integrate_from(system, start, &Options { step, end_time: None, history: false })?;
+        let result = integrate_from(
+            system,
+            start,
+            &Options { step, end_time: None, history: false, tolerance: CERTAIN },
+        )?;
         let of_sphere =
             system.candidates.iter().filter(|candidate| candidate.contact_body == ContactBody::Sphere);
         let zone = of_sphere.map(|candidate| candidate.offset).fold(0.0, f64::max);

@@ -196,10 +196,13 @@ pub struct Workspace<'a> {
 }
 
 impl<'a> Workspace<'a> {
-    /// Room for `system`, which yields within a step as `nodes` do, and remembers `traces` if it relaxes.
-    pub fn new(system: &System, nodes: &'a Nodes, traces: Option<Traces>) -> Self {
-        let rough = system.friction > 0.0;
-        let friction = rough.then(|| Friction::new(system.friction, nodes.len(), system.balls.len()));
+    /// Room for `system`, which yields within a step as `nodes` do, remembers `traces` if it relaxes, and has `friction` if it is rough.
+    pub(super) fn new(
+        system: &System,
+        nodes: &'a Nodes,
+        traces: Option<Traces>,
+        friction: Option<Friction>,
+    ) -> Self {
         Self {
             contact: ContactProblem::new(nodes, system.indentation, traces, friction),
             accelerations: Vec::new(),
