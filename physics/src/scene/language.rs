@@ -104,7 +104,7 @@ impl Grammar {
             optional(
                 "friction",
                 pure(Bound::NOT_NEGATIVE),
-                "Coulomb's coefficient of friction of all contacts; of a seal seat only the reference has it; absent = 0",
+                "Coulomb's coefficient of friction of all contacts; model C of a seal seat takes at most 3; absent = 0",
             ),
             optional("run", Kind::Table(&RUN), "Length of the run"),
             optional(
