@@ -65,6 +65,7 @@ fn encoded(
     encoder.set_depth(png::BitDepth::Eight);
     // flat areas compress best as they are, and in a third of the time
     encoder.set_filter(png::Filter::NoFilter);
+    encoder.set_deflate_compression(png::DeflateCompression::Level(3));
     let unit = png::Unit::Meter;
     encoder.set_pixel_dims(per_metre.map(|n| png::PixelDimensions { xppu: n, yppu: n, unit }));
     let failed = |e: png::EncodingError| internal(&e.to_string());
