@@ -35,13 +35,14 @@ SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-li
 # the models for live pages
 WASM   := target/wasm32-unknown-unknown/live/impactcheck_live.wasm
 
-.PHONY: test passed setup lint live-page rust wheel python live gate report solutions validation evidence
+.PHONY: test passed setup lint live-page rust docs wheel python live gate report solutions validation evidence
 
-# packages are fetched while the compiler works
+# packages are fetched while the compiler works; what takes one processor runs together
 test:
 	@$(MAKE) --no-print-directory -j2 setup lint
 	@$(MAKE) --no-print-directory live-page || echo "the live page is not built and not tested: it needs rustup target add wasm32-unknown-unknown"
-	@$(MAKE) --no-print-directory rust python live gate
+	@$(MAKE) --no-print-directory rust
+	@$(MAKE) --no-print-directory -j3 --output-sync=line docs python live gate
 	@$(MAKE) --no-print-directory passed
 
 # a program of its own: `setup` may have installed the browser
@@ -66,6 +67,8 @@ rust: lint
 	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --workspace --no-fail-fast $(if $(UNCHECKED),-E 'not test(/^$(UNCHECKED)/)'); \
 	else cargo test --release --workspace $(if $(UNCHECKED),-- --skip $(UNCHECKED)); fi
 	cargo test --release --workspace --doc
+
+docs:
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --quiet
 
 # only the package's own crate is compiled for it, the rest serves tests and program too

@@ -153,10 +153,12 @@ fn arrows(report: &SceneReport) -> Vec<Arrow> {
 
 /// Size and direction of the velocity, and how far it is from the intended direction.
 fn flight(report: &SceneReport) -> Markup {
-    let intended = report.scene.seal_seat().map_or(f64::NAN, |setup| setup.intended_angle);
+    let setup = report.scene.seal_seat().ok();
+    let intended = setup.map_or(f64::NAN, |setup| setup.intended_angle);
+    let turns = setup.is_some_and(|setup| setup.friction > 0.0);
     let row = |name: &str, summary: &Summary| {
         let Some(q) = SeatQuantities::of_table(&summary.quantities) else {
-            return html! { tr { th scope="row" { (name) } td.left colspan="6" { "not determined" } } };
+            return html! { tr { th scope="row" { (name) } td.left colspan=(6 + usize::from(turns)) { "not determined" } } };
         };
         html! { tr {
             th scope="row" { (name) }
@@ -165,6 +167,7 @@ fn flight(report: &SceneReport) -> Markup {
             td { (degrees(q.sphere_angle - intended)) }
             td { (significant(100.0 * q.efficiency, 4)) " %" }
             td { (significant(1e6 * q.left_flank_impulse, 4)) } td { (significant(1e6 * q.right_flank_impulse, 4)) }
+            @if turns { td { (summary.sphere_spin.map_or_else(|| "–".to_owned(), |spin| with_unit(spin, prefixed("rad/s", spin), 4))) } }
         } }
     };
     html! {
@@ -173,6 +176,7 @@ fn flight(report: &SceneReport) -> Markup {
                 @for heading in ["", "speed", "direction", "from the intended", "efficiency", "left flank, µN·s", "right flank, µN·s"] {
                     th scope="col" { (named(heading)) }
                 }
+                @if turns { th scope="col" { "spin" } }
             } }
             tbody {
                 (row("reference", &report.comparison.reference))

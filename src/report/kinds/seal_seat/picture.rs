@@ -226,6 +226,9 @@ pub(super) fn measures(scene: &SealSeat) -> Vec<(String, String)> {
             ),
         ),
     ];
+    if scene.friction > 0.0 {
+        facts.push(("friction".to_owned(), format!("{} in all contacts", scene.friction)));
+    }
     facts.extend(materials([&seat.material, &sphere.material]));
     facts
 }
