@@ -42,8 +42,8 @@ class SeatRun(ImpactRun):
     sphere_velocity: tuple[float, float]
     """Along x and z at the end, m/s."""
     actuator_velocity: float
-    sphere_spin: float
-    """About y at the end, rad/s, positive from z to x; 0 of an elastic sphere, where it is not known."""
+    sphere_spin: float | None
+    """About y at the end, rad/s, positive from z to x; none of an elastic sphere."""
     flank_impulses: tuple[float, float]
     """Normal impulse on the left and on the right flank, N s."""
     unconverged: int
@@ -236,7 +236,7 @@ def _result(loop: Loop, seat: SeatModel, scene: SeatScene, course: Course, rows:
         processor_seconds=course.processor_seconds,
         sphere_velocity=(float(speed[0]), float(speed[2])),
         actuator_velocity=problem.rigids[seat.actuator].v[2],
-        sphere_spin=0.0 if seat.sphere_facets is not None else problem.rigids[0].spin[1],
+        sphere_spin=problem.rigids[0].spin[1] if seat.sphere_facets is None else None,
         flank_impulses=(left, right),
         initial_energy=scene.initial_energy,
         energy_residual=abs(energies.total + relaxed - initial - work - (tips + flanks)) / initial,

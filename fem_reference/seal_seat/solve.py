@@ -107,8 +107,7 @@ def quantities(scene: SeatScene, solution: Solution) -> dict[str, float]:
     run = solution.run
     x, z = run.sphere_velocity
     sphere, actuator = run.contacts
-    turns = scene.friction > 0.0 and solution.seat.sphere_facets is None
-    return {
+    found = {
         "efficiency": 0.5 * scene.sphere_mass * (x * x + z * z) / scene.initial_energy,
         "sphere_velocity_x": x,
         "sphere_velocity_z": z,
@@ -122,5 +121,7 @@ def quantities(scene: SeatScene, solution: Solution) -> dict[str, float]:
         "left_flank_impulse": run.flank_impulses[0],
         "right_flank_impulse": run.flank_impulses[1],
         "first_frequency": seat_frequency(solution.loop, solution.seat),
-        **({"sphere_spin": run.sphere_spin} if turns else {}),
     }
+    if scene.friction > 0.0 and run.sphere_spin is not None:
+        found["sphere_spin"] = run.sphere_spin
+    return found
