@@ -135,3 +135,24 @@ fn a_sweep_of_seats_gives_the_launches_of_the_series() {
     let (status, _, error) = run(&["sweep", "--quantity", "outer_velocity_final"]);
     assert!(status == 2 && error.contains("sphere_velocity_x"), "{error}");
 }
+
+/// A sweep of the friction gives what finite elements find (`friction.rs`).
+#[test]
+fn friction_is_varied_like_any_number() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = |name: &str| folder.path().join(name);
+    let write = |name: &str, text: String| std::fs::write(path(name), text).expect("file");
+    let text = std::fs::read_to_string(fixture("seal-seat.toml")).expect("scene");
+    write("rough.toml", format!("friction = 0.1\n{text}"));
+    std::fs::copy(fixture("seal-seat-improved-coarse.vtu"), path("seat.vtu")).expect("mesh");
+    let head = "scene = \"rough.toml\"\nmesh = \"seat.vtu\"\n";
+    write("plan.toml", format!("{head}[[vary]]\nfield = \"friction\"\nvalues = [0, 0.1]\n"));
+    let [plan, out] = ["plan.toml", "out"].map(|name| path(name).display().to_string());
+    let (status, _, error) = impactcheck(&["study", "sweep", &plan, "--out", &out], folder.path());
+    assert_eq!(status, 0, "{error}");
+    let mut table = csv::Reader::from_path(path("out/sweep.csv")).expect("table");
+    let column = table.headers().expect("header").iter().position(|name| name.starts_with("sphere_angle"));
+    let angle = |row: csv::StringRecord| row[column.expect("a column")].parse::<f64>().expect("number");
+    let angles: Vec<f64> = table.records().map(|row| angle(row.expect("row")).to_degrees()).collect();
+    assert!((angles[0] - 14.05).abs() < 0.05 && (angles[1] - 10.92).abs() < 0.05, "{angles:?}");
+}

@@ -127,7 +127,7 @@ impl Field {
 /// Why the field called `path` changes no reduced model of a scene with these checked `values`, if it does not.
 pub(super) fn without_effect(values: &Values, path: &str) -> Option<&'static str> {
     let of_material = |key: &str| path.strip_suffix(key).filter(|rest| rest.starts_with("materials."));
-    if path.starts_with("reference.") || (path == "friction" && has(values, "seat")) {
+    if path.starts_with("reference.") {
         return Some("only the reference uses it");
     }
     if path.starts_with("flight.") || path.starts_with("vibration.") {
