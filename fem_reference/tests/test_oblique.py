@@ -307,7 +307,6 @@ def test_a_plate_struck_off_its_centre_is_the_sum_of_its_modes() -> None:
         oblique(
             "both",
             2,
-            1.5,
             plate__radius=0.012,
             plate__thickness=1e-3,
             outer__radius=4e-3,
