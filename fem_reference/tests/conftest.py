@@ -87,6 +87,8 @@ def vibrating(
 ) -> tuple[AxisymmetricMotion, Modes, Floats]:
     """A plate that starts in one of its modes with unit modal velocity, bodies leaving it.
 
+    The step is one for half the elements that a scene asks for.
+
     Returns:
         The motion, the plate's modes, and their masses times shapes.
     """
@@ -98,7 +100,7 @@ def vibrating(
     motion = AxisymmetricMotion(replace(system, velocity=velocity))
     if damping_ratio > 0.0:
         motion.damp(damping_ratio, float(modes.frequencies[-1]))
-    motion.loop.set_step(2e-9, 1, levels)
+    motion.loop.set_step(4e-9, 1, levels)
     return motion, modes, np.repeat(system.mass[plate], 2)[:, None] * modes.shapes
 
 

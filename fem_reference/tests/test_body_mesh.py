@@ -370,7 +370,7 @@ def test_a_smooth_face_of_a_mesh_is_fixed_by_a_point(plate_msh: Path) -> None:
 @pytest.mark.parametrize("size", [2.0, 0.5], ids=["coarser", "finer"])
 def test_another_mesh_keeps_the_body(tmp_path: Path, order: int, size: float) -> None:
     """The finer one is that of a plate with one layer of elements."""
-    path = write_mesh(tmp_path / "plate.msh", plate, 2.5, order, PLATE_FACES)
+    path = write_mesh(tmp_path / "plate.msh", plate, 3.5, order, PLATE_FACES)
     own = result_of(path, "top", fixed=["rim"])
     if size > 1.0:
         body, fixed, contacts = remeshed(own.body, own.fixed, own.contacts, size, "plate")

@@ -34,7 +34,7 @@ def test_damping_ratio_of_a_scene() -> None:
 @pytest.mark.parametrize("mode", [0, 2])
 def test_free_mode_decays_as_its_closed_form(mode: int, levels: int) -> None:
     """Of the mode exp(-zeta omega t) sin(omega_d t) / omega_d; the others stay at rest."""
-    system, _ = make_system(parse_scene(document(inner__gap=1e-3)))
+    system, _ = make_system(parse_scene(document(inner__gap=1e-3)), 0.5)
     motion, modes, weighted = vibrating(system, mode, levels, RATIO)
     loop, damping = motion.loop, motion.damping
     assert damping is not None
@@ -62,7 +62,7 @@ def test_free_mode_decays_as_its_closed_form(mode: int, levels: int) -> None:
 @pytest.mark.parametrize("edge", ["clamped", "free"])
 def test_balances_close(edge: str) -> None:
     scene = parse_scene(document(plate__edge=edge, plate__damping_ratio=RATIO))
-    system, duration = make_system(scene)
+    system, duration = make_system(scene, 0.5)
     many = integrate(system, scene, duration)
     one = integrate(system, scene, duration, end_time=float(many.times[-1]), most_levels=1)
     assert many.energy_residual < 1e-5

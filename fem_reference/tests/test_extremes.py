@@ -43,9 +43,10 @@ def test_a_hardly_compressible_sphere_is_hertz() -> None:
         plate__radius=0.006,
         plate__thickness=0.003,
         outer__material=RUBBER,
-        outer__speed=0.005,
+        outer__speed=0.02,
         inner__gap=1e-3,
-        run__end_time=7e-4,
+        run__end_time=5.3e-4,
+        reference__elements_per_contact_radius=5,
     )
     assert_balances_close(run)
     stiffness = hertz_stiffness(
@@ -53,7 +54,7 @@ def test_a_hardly_compressible_sphere_is_hertz() -> None:
     )
     scale = hertz_time_scale(scene.outer.mass, stiffness, scene.speed)
     assert run.contacts[0].count == 1
-    # With nu = 0.3 the same mesh is off by -0.6 % and 0.9 %: it is the mesh, and falls with it.
+    # With nu = 0.3 the same mesh is off by -0.7 % and 1.1 %: it is the mesh, and falls with it.
     assert run.contacts[0].end == pytest.approx(2.943275 * 1.25**0.4 * scale, rel=0.015)
     force = 1.143263 * scene.outer.mass * scene.speed / scale
     assert run.contacts[0].force_peak == pytest.approx(force, rel=0.015)

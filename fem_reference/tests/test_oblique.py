@@ -129,7 +129,7 @@ def test_what_an_oblique_impact_cannot_have() -> None:
 @pytest.mark.parametrize("rigid", [pytest.param("both", marks=pytest.mark.evidence), "none"])
 def test_a_half_struck_at_the_centre_is_what_a_quarter_is(rigid: str) -> None:
     # The meshes are not the same: force peaks of linear elements differ by up to 1.3 % for that.
-    scene = oblique(rigid, 2 if rigid == "both" else 1, **SMALL)
+    scene = oblique(rigid, 2 if rigid == "both" else 1, **SMALL, outer__speed=1.5)
     half, quarter = (strike(scene, half) for half in (True, False))
     assert half.run.sideways is not None
     assert np.abs(half.run.sideways.velocities).max() < 1e-3 * half.scene.speed
@@ -138,7 +138,7 @@ def test_a_half_struck_at_the_centre_is_what_a_quarter_is(rigid: str) -> None:
         assert found[name] == pytest.approx(value, rel=0.01 if rigid == "both" else 0.03), name
 
 
-@pytest.mark.parametrize(("rigid", "elements"), [("both", 2.0), ("inner", 3.0)])
+@pytest.mark.parametrize(("rigid", "elements"), [("both", 2.0), ("inner", 2.5)])
 def test_a_sliding_ball_loses_friction_times_the_normal_impulse(
     rigid: str, elements: float
 ) -> None:
@@ -173,7 +173,7 @@ def rolled(scene: Scene, inertia: float) -> float:
     material = ball.material
     normal = hertz_stiffness(material.plane_strain_modulus, ball.tip_radius)
     tangential = 8.0 * material.shear_modulus / (2.0 - material.poisson_ratio)
-    step, lighter = 2e-9, 1.0 + 2.5 / inertia
+    step, lighter = 1e-8, 1.0 + 2.5 / inertia
     z, v, d, w = 0.0, scene.normal_speed, 0.0, scene.tangential_velocity
     radii, stuck = [0.0], [0.0]
     start = w
@@ -193,7 +193,17 @@ def rolled(scene: Scene, inertia: float) -> float:
 
 
 def test_a_ball_that_does_not_slip_springs_back_along_the_wall() -> None:
-    found = strike(oblique("inner", 1, 3.0, outer__angle=math.radians(20.0), friction=5.0, **BLOCK))
+    found = strike(
+        oblique(
+            "inner",
+            1,
+            3.0,
+            outer__angle=math.radians(20.0),
+            outer__speed=1.0,
+            friction=5.0,
+            **BLOCK,
+        )
+    )
     expected = rolled(found.scene, found.inertia)
     # A rigid ball would roll, and lose 2/7 of its tangential velocity.
     assert expected < 0.85 * 2.0 / 7.0 * found.scene.tangential_velocity

@@ -61,7 +61,7 @@ def test_free_mode_decays_as_its_prony_roots_say(mode: int, levels: int) -> None
 
     By its residues; the oscillation's root alone has the decay.
     """
-    system, _ = make_system(parse_scene(relaxing("plate", inner__gap=1e-3)))
+    system, _ = make_system(parse_scene(relaxing("plate", inner__gap=1e-3)), 0.5)
     motion, modes, weighted = vibrating(system, mode, levels)
     omega = modes.frequencies[mode]
     numerator = np.poly1d([1.0])
@@ -116,7 +116,7 @@ def test_terms_that_never_or_at_once_relax_leave_an_elastic_material() -> None:
 
 @pytest.mark.parametrize("edge", ["clamped", "free"])
 def test_balances_close(edge: str) -> None:
-    scene = relaxing("outer", "plate", plate__edge=edge)
+    scene = relaxing("outer", "plate", plate__edge=edge, reference__elements_per_contact_radius=2)
     many = run_of(scene)
     one = run_of(scene, end_time=float(many.times[-1]), most_levels=1)
     for run in (many, one):
@@ -144,7 +144,10 @@ def test_threads_relax_as_one() -> None:
 
 
 def test_damping_and_relaxation_together() -> None:
-    run = run_of(relaxing("plate", plate__damping_ratio=0.02), most_levels=1)
+    run = run_of(
+        relaxing("plate", plate__damping_ratio=0.02, reference__elements_per_contact_radius=2),
+        most_levels=1,
+    )
     assert run.losses is not None and run.losses.bodies is not None
     assert run.losses.plate_damping > 0.005 * run.initial_energy
     assert run.energy_residual < 2e-5
@@ -169,12 +172,15 @@ def test_damping_and_relaxation_together() -> None:
     ids=["friction", "film", "viscous film", "drag, mass and damping"],
 )
 def test_balance_closes_with_another_loss(other_loss: dict[str, Any]) -> None:
+    # Friction takes energy late, and from slow bodies more of it; films are slow to solve.
+    speed, end = (0.55, 1e-4) if "friction" in other_loss else (2.0, 6e-5)
     coarse: dict[str, Any] = {
-        "reference__elements_per_contact_radius": 3,
-        "run__end_time": 1e-4,
+        "outer__speed": speed,
+        "reference__elements_per_contact_radius": 2,
+        "run__end_time": end,
     }
     scene = relaxing("outer", "plate", **other_loss, **coarse)
-    run = run_of(scene, end_time=1e-4, most_levels=1)
+    run = run_of(scene, end_time=end, most_levels=1)
     assert run.losses is not None and run.losses.bodies is not None
     assert sum(run.losses.bodies) > 0.05 * run.initial_energy
     other = run.losses.total - sum(run.losses.bodies)
@@ -205,17 +211,17 @@ def test_maxwell_sphere_on_a_rigid_wall_hunter(elements: float, within: float) -
         "plate__edge": "free",
         "plate__radius": 0.006,
         "plate__thickness": 0.003,
-        "outer__speed": 0.02,
+        "outer__speed": 0.1,
         "inner__gap": 1e-3,
-        "run__end_time": 1.8e-4,
+        "run__end_time": 1.3e-4,
         "reference__elements_per_contact_radius": elements,
     }
-    elastic = run_of(document(**changes), end_time=1.8e-4)
+    elastic = run_of(document(**changes), end_time=1.3e-4)
     duration = elastic.contacts[0].end
     assert duration is not None
     # Next to a Maxwell fluid, which a solid's relaxation may not be.
     terms = [{"ratio": 1.0 - 1e-6, "time": 100.0 * duration}]
-    fluid = run_of(relaxing("outer", terms=terms, **changes), end_time=1.8e-4)
+    fluid = run_of(relaxing("outer", terms=terms, **changes), end_time=1.3e-4)
     lost = 1.0 - fluid.outer_velocity / elastic.outer_velocity
     assert lost == pytest.approx(4.0 / 9.0 * 0.01, rel=within)
 
@@ -232,10 +238,10 @@ def solid_run(scene_document: dict[str, Any], **options: Any) -> Run:
 
 def test_solid_elements_lose_what_axisymmetric_ones_do(tmp_path: Path) -> None:
     """And a run that is cut off goes on from its checkpoint as if nothing had been."""
-    scene = relaxing("outer", "plate", plate__radius=0.012, run={"end_time": 2e-5})
+    scene = relaxing("outer", "plate", plate__radius=0.012, run={"end_time": 1.2e-5})
     scene["inner"]["radius"] = scene["outer"]["radius"] = 0.005
     scene["outer"]["speed"] = 2.0
-    flat = run_of(scene, end_time=2e-5)
+    flat = run_of(scene, end_time=1.2e-5)
     scene["reference"] = {"geometry": "solid", "elements_per_contact_radius": 2}
     whole = solid_run(scene)
     assert whole.energy_residual < 2e-5

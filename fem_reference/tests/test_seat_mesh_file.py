@@ -17,7 +17,7 @@ def test_the_mesh_file_is_what_others_read(tmp_path: Path) -> None:
     path = tmp_path / "scene.json"
     path.write_text(json.dumps(seat_document(True)), encoding="utf-8")
     out = tmp_path / "seat.vtu"
-    done = run_program("mesh", "--scene", path, "--out", out, "--size-factor", "2.2")
+    done = run_program("mesh", "--scene", path, "--out", out, "--size-factor", "3")
     assert done.returncode == 0, done.stderr
     described = json.loads(out.with_suffix(".json").read_text(encoding="utf-8"))
     assert described["geometry_hash"] == "geometry" and described["element_order"] == 2

@@ -199,7 +199,7 @@ def steps(folder: Path, processes: int, threads: int) -> dict[str, Any]:
         return dict(values)
 
 
-@pytest.mark.parametrize(("processes", "threads"), [(2, 1), (3, 1), (2, 2)])
+@pytest.mark.parametrize(("processes", "threads"), [(3, 1), (2, 2)])
 def test_several_processes_step_as_one(
     folder: Path, one_process: dict[str, Any], processes: int, threads: int
 ) -> None:
