@@ -35,12 +35,11 @@ SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-li
 # the models for live pages
 WASM   := target/wasm32-unknown-unknown/live/impactcheck_live.wasm
 
-.PHONY: test passed setup lint live-page rust docs wheel python live gate report solutions validation evidence
+.PHONY: test passed setup lint live-page live-page-or-none rust docs wheel python live gate report solutions validation evidence
 
 # packages are fetched while the compiler works; what takes one processor runs together
 test:
-	@$(MAKE) --no-print-directory -j2 setup lint
-	@$(MAKE) --no-print-directory live-page || echo "the live page is not built and not tested: it needs rustup target add wasm32-unknown-unknown"
+	@$(MAKE) --no-print-directory -j3 setup lint live-page-or-none
 	@$(MAKE) --no-print-directory rust
 	@$(MAKE) --no-print-directory -j3 --output-sync=line docs python live gate
 	@$(MAKE) --no-print-directory passed
@@ -62,6 +61,9 @@ live-page:
 	@cargo build --profile live --package impactcheck-live --target wasm32-unknown-unknown
 	@if [ ! -f $(WASM).gz ] || [ $(WASM) -nt $(WASM).gz ]; then \
 	    gzip --best --no-name --keep --force $(WASM) && touch src/main.rs python/src/lib.rs; fi
+
+live-page-or-none:
+	@$(MAKE) --no-print-directory live-page || echo "the live page is not built and not tested: it needs rustup target add wasm32-unknown-unknown"
 
 rust: lint
 	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --workspace --no-fail-fast $(if $(UNCHECKED),-E 'not test(/^$(UNCHECKED)/)'); \
