@@ -78,8 +78,8 @@ struct Pass {
     held: f64,
 }
 
-/// A node in contact during a pass.
-struct Sticking {
+/// A node in contact, while its tangential force is sought.
+struct ContactNode {
     candidate: usize,
     normal: Vector3<f64>,
     /// Largest tangential force in N.
@@ -93,18 +93,18 @@ struct Sticking {
 impl ContactProblem<'_> {
     /// Finds normal and tangential forces in turn, until another turn would change these by no more than they may.
     pub(super) fn solve_with_friction(&mut self, modal: &[f64], balls: &[Ball]) -> Result<()> {
-        self.go_on();
+        self.extrapolate();
         for _ in 0..MOST_TURNS {
             self.solve_normal(modal, balls)?;
-            if self.stick(balls)? {
+            if self.solve_tangential(balls)? {
                 return Ok(());
             }
         }
         Err(self.not_settled(MOST_TURNS))
     }
 
-    /// Lets the tangential forces change once more as over the last step, for a start.
-    fn go_on(&mut self) {
+    /// Starts from tangential forces extrapolated from the last step.
+    fn extrapolate(&mut self) {
         let Some(friction) = &mut self.loads.friction else { return };
         for &i in &self.loads.active {
             friction.force[i] += friction.trend[i];
@@ -120,9 +120,9 @@ impl ContactProblem<'_> {
     }
 
     /// Finds the tangential forces under the present normal forces; whether these fit them.
-    fn stick(&mut self, balls: &[Ball]) -> Result<bool> {
+    fn solve_tangential(&mut self, balls: &[Ball]) -> Result<bool> {
         let Some(mut friction) = self.loads.friction.take() else { return Ok(true) };
-        let nodes = self.nodes_that_stick(&friction, balls);
+        let nodes = self.nodes_in_contact(&friction, balls);
         let before = friction.force.clone();
         let pressed: f64 = self.loads.active.iter().map(|&i| self.loads.force[i]).sum();
         let mut settles = |_: &usize| {
@@ -141,7 +141,7 @@ impl ContactProblem<'_> {
     }
 
     /// Lets each of `nodes` stick or slide, in turn.
-    fn pass_over(&mut self, nodes: &[Sticking], friction: &mut Friction) -> Pass {
+    fn pass_over(&mut self, nodes: &[ContactNode], friction: &mut Friction) -> Pass {
         let part = 0..self.watch.up_to(&self.loads.active);
         let (mut changed, mut held) = (0.0, 0.0);
         for node in nodes {
@@ -160,14 +160,14 @@ impl ContactProblem<'_> {
     }
 
     /// The nodes in contact; one that has just touched has slid since the instant before.
-    fn nodes_that_stick(&mut self, friction: &Friction, balls: &[Ball]) -> Vec<Sticking> {
+    fn nodes_in_contact(&mut self, friction: &Friction, balls: &[Ball]) -> Vec<ContactNode> {
         let mut nodes = Vec::with_capacity(self.loads.active.len());
         for &i in &self.loads.active {
             let normal = self.loads.normal[i];
             let compliance = self.watch.own_compliance(self.nodes, i);
             let across = Matrix3::identity() - normal * normal.transpose();
             let ball = self.nodes.ball[i];
-            nodes.push(Sticking {
+            nodes.push(ContactNode {
                 candidate: i,
                 normal,
                 most: friction.coefficient * self.loads.force[i].max(0.0),

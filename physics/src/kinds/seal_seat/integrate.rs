@@ -35,7 +35,7 @@ pub struct Options {
     pub end_time: Option<f64>,
     /// Whether a sample is kept of every step.
     pub history: bool,
-    /// Relative error of the run that is asked for, which friction forces are solved for.
+    /// Relative error that the run may have; friction forces are solved to a tenth of it.
     pub tolerance: f64,
 }
 
