@@ -35,11 +35,11 @@ SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-li
 # the models for live pages
 WASM   := target/wasm32-unknown-unknown/live/impactcheck_live.wasm
 
-.PHONY: test passed setup lint live-page live-page-or-none rust docs wheel python live gate report solutions validation evidence
+.PHONY: test passed setup lint lint-python live-page live-page-or-none rust docs wheel python live gate report solutions validation evidence
 
-# packages are fetched while the compiler works; what takes one processor runs together
+# packages are fetched while the compiler works; what fails within seconds comes first
 test:
-	@$(MAKE) --no-print-directory -j3 setup lint live-page-or-none
+	@$(MAKE) --no-print-directory -j3 setup lint lint-python live-page-or-none
 	@$(MAKE) --no-print-directory rust
 	@$(MAKE) --no-print-directory -j3 --output-sync=line docs python live gate
 	@$(MAKE) --no-print-directory passed
@@ -50,6 +50,12 @@ passed:
 
 setup:
 	@.ci/setup
+
+lint-python: setup
+	$(VENV)/bin/ruff check $(SCRIPTS)
+	$(VENV)/bin/ruff format --check $(SCRIPTS)
+	guide/check
+	$(TOOL) -m mypy
 
 lint:
 	cargo fmt --all --check
@@ -81,10 +87,6 @@ wheel: setup
 	$(WHEEL)/bin/python -m pip install --quiet --force-reinstall --no-deps target/wheels/*.whl
 
 python: setup wheel
-	$(VENV)/bin/ruff check $(SCRIPTS)
-	$(VENV)/bin/ruff format --check $(SCRIPTS)
-	guide/check
-	$(TOOL) -m mypy
 	cargo build --release
 	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference validation live
 	guide/generate target/release/impactcheck --check
