@@ -40,8 +40,7 @@ WASM   := target/wasm32-unknown-unknown/live/impactcheck_live.wasm
 # packages are fetched while the compiler works; what fails within seconds comes first
 test:
 	@$(MAKE) --no-print-directory -j3 setup lint lint-python live-page-or-none
-	@$(MAKE) --no-print-directory rust
-	@$(MAKE) --no-print-directory -j3 --output-sync=line docs python live gate
+	@$(MAKE) --no-print-directory -j5 --output-sync=line rust docs python live gate
 	@$(MAKE) --no-print-directory passed
 
 # a program of its own: `setup` may have installed the browser

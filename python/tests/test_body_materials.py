@@ -19,7 +19,7 @@ for tag, name in ((1, "left"), (2, "right")):
 faces = [tag for _, tag in gmsh.model.getEntities(2)]
 base = [tag for tag in faces if gmsh.model.occ.getCenterOfMass(2, tag)[2] == 0]
 gmsh.model.addPhysicalGroup(2, base, name="base")
-gmsh.option.setNumber("Mesh.MeshSizeMax", 1.2)
+gmsh.option.setNumber("Mesh.MeshSizeMax", 1.6)
 gmsh.model.mesh.generate(3)
 gmsh.write("halves.msh")
 gmsh.finalize()
