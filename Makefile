@@ -23,6 +23,9 @@ OUT    := target/check
 # the one check that needs what only root installs; without it the last line says so, and CI fails
 BROWSER  = $(or $(CHROMIUM),$(shell command -v chromium || command -v chromium-browser || command -v google-chrome))
 UNCHECKED = $(if $(BROWSER)$(CI),,browser::)
+# the Python package, as it is installed
+PACKAGE_TESTS = IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck IMPACTCHECK_PYTHON=$(or $(IMPACTCHECK_PYTHON),$(CURDIR)/$(TOOL)) \
+    $(WHEEL)/bin/python -m pytest -q -n auto --dist worksteal
 SCRIPTS := fem_reference examples live python validation benches tests/freeze guide/check guide/generate
 SCENES := $(basename $(notdir $(wildcard scenes/*.toml)))
 # meshes of a solid at `fine` take an hour
@@ -89,8 +92,7 @@ python: setup wheel
 	cargo build --release
 	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference validation live
 	guide/generate target/release/impactcheck --check
-	IMPACTCHECK_PROGRAM=$(CURDIR)/target/release/impactcheck IMPACTCHECK_PYTHON=$(or $(IMPACTCHECK_PYTHON),$(CURDIR)/$(TOOL)) \
-	    $(WHEEL)/bin/python -m pytest -q -n auto --dist worksteal python
+	$(PACKAGE_TESTS) python
 	$(WHEEL)/bin/python -m mypy.stubtest impactcheck._core
 
 # a live finite-element run on coarse meshes, and the gate on what it gives; the scene is the one whose coarse mesh is
@@ -148,6 +150,7 @@ evidence: setup wheel
 	$(TOOL) validation/draw.py $(OUT)/validation/scenes
 	IMPACTCHECK_PYTHON=$(PYTHON) $(TOOL) validation/check.py $(OUT)/validation/scenes validation/base.jsonl
 	$(TOOL) -m pytest -q -n auto --dist worksteal -m evidence fem_reference live
+	$(PACKAGE_TESTS) -m evidence python
 	cargo nextest run --release --workspace --ignore-default-filter -E 'not default()'
 	# flights of the sphere by another program
 	$(TOOL) -m fem_reference flights --out fem_reference/solutions/flights.json

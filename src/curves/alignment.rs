@@ -1,6 +1,6 @@
 //! Two histories with different time axes, brought onto a common one.
 
-use super::interpolation::MonotoneCubic;
+use super::MonotoneCubic;
 use crate::result::{Curve, History, Outcome};
 use serde::Serialize;
 

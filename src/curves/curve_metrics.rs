@@ -2,9 +2,7 @@
 //! the thresholds of crash tests are far too loose between two computations.
 
 use super::alignment::AlignedCurve;
-use super::iso18571::{Grade, iso18571};
-use super::russell::russell;
-use super::sprague_geers::sprague_geers;
+use super::{Grade, iso18571, russell, sprague_geers};
 use serde::Serialize;
 
 /// Metrics of one curve; `None` where a measure is not defined (a curve that vanishes).

@@ -219,27 +219,32 @@ mod tests {
         }
     }
 
+    /// Fails where the stated intervals do not hold the step in 92 to 98.5 % of many records of flights of a `length` in s, with noise
+    /// that a filter (poles, Hz) limits. The share scatters by 0.6 to 1.1 % (short flights) and 1.1 to 1.5 %.
+    fn assert_95_percent(length: f64, filter: Filter, records: u32) {
+        let within = (0..u64::from(records)).filter(|seed| {
+            let free = free_flight(length, filter, *seed);
+            let step = free.fitted().and_then(|flight| flight.step).expect("a step");
+            (step - STEP).abs() <= 1.96 * free.errors(BANDWIDTH, 0.0).expect("enough of it").step
+        });
+        let share = within.count() as f64 / f64::from(records);
+        assert!((0.92..=0.985).contains(&share), "{length:e} s, {filter:?}: {share}");
+    }
+
     /// Short and long flights; noise that is white, and that filters from a single pole to steep ones limit. A fit that takes all samples for
-    /// independent states intervals that hold the step in 37 and 7 % at 100 and 20 kHz. The shares scatter by 0.6 to 1.1 %
-    /// (short flights) and 1.1 to 1.5 %.
+    /// independent states intervals that hold the step in 37 and 7 % at 100 and 20 kHz.
     #[test]
     fn intervals_of_95_percent_hold_the_step_in_95_percent_of_the_records() {
-        for (length, filter, records) in [
-            (40e-6, None, 400_u32),
-            (40e-6, Some((8, 100e3)), 400),
-            (40e-6, Some((1, 20e3)), 1200),
-            (40e-6, Some((8, 20e3)), 400),
-            (300e-6, Some((1, 20e3)), 400),
-            (300e-6, Some((2, 100e3)), 200),
-        ] {
-            let within = (0..u64::from(records)).filter(|seed| {
-                let free = free_flight(length, filter, *seed);
-                let step = free.fitted().and_then(|flight| flight.step).expect("a step");
-                (step - STEP).abs() <= 1.96 * free.errors(BANDWIDTH, 0.0).expect("enough of it").step
-            });
-            let share = within.count() as f64 / f64::from(records);
-            assert!((0.92..=0.985).contains(&share), "{length:e} s, {filter:?}: {share}");
-        }
+        assert_95_percent(40e-6, None, 400);
+        assert_95_percent(40e-6, Some((8, 100e3)), 400);
+        assert_95_percent(40e-6, Some((1, 20e3)), 1200);
+        assert_95_percent(300e-6, Some((2, 100e3)), 200);
+    }
+
+    #[test]
+    fn intervals_of_95_percent_hold_the_step_under_slow_noise() {
+        assert_95_percent(40e-6, Some((8, 20e3)), 400);
+        assert_95_percent(300e-6, Some((1, 20e3)), 400);
     }
 
     /// Noise far below the step between two values shows one value alone, or few: the interval holds the step all the same.

@@ -255,11 +255,7 @@ mod tests {
     #[test]
     fn a_range_in_which_modes_avoid_each_other_is_an_error() {
         let ratio = [0.3; 2];
-        for (edge, range, modes) in [
-            (Edge::Free, [0.6, 1.1], 12),
-            (Edge::Clamped, [0.1, 0.15], 12),
-            (Edge::Clamped, [0.05, 0.08], 24),
-        ] {
+        for (edge, range, modes) in [(Edge::Free, [0.6, 1.1], 12), (Edge::Clamped, [0.05, 0.08], 24)] {
             let widest = widest_patch(range[1]);
             let exact = |t: f64| MeshedPlate::new(edge, ratio[0], t, modes, widest).unwrap();
             assert!(exact(range[1]).reaches_shear(), "{edge:?} {range:?} {modes}");

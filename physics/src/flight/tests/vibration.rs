@@ -87,7 +87,7 @@ fn energy_bounds_short_shocks_and_statics_long_ones() {
     assert!((1.0..1.001).contains(&(shifts / bound)), "{shifts} {bound}");
     let (shifts, unseats, _) = of(0.2);
     assert!((1.0..1.001).contains(&(shifts / unseats)), "{shifts} {unseats}");
-    for k in -2..3 {
+    for k in [-2, 0, 2] {
         let frequency = 100.0 * 4.0_f64.powi(k);
         for wave in [Wave::HalfSine { duration: 1.0 }, Wave::Sine { frequency, periods: 3.0 }] {
             let found = thresholds(&setup, &landscape, &wave.at_frequency(frequency), left);

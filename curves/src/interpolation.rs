@@ -4,7 +4,7 @@
 //! interpolants", SIAM J. Sci. Stat. Comput. 5 (1984), 300-304.
 
 /// Piecewise cubic through given points, monotone wherever the points are.
-pub(crate) struct MonotoneCubic<'a> {
+pub struct MonotoneCubic<'a> {
     x: &'a [f64],
     y: &'a [f64],
     slope: Vec<f64>,
@@ -12,7 +12,7 @@ pub(crate) struct MonotoneCubic<'a> {
 
 impl<'a> MonotoneCubic<'a> {
     /// Interpolant of `y` over strictly increasing `x`; both of the same length, at least 2.
-    pub(crate) fn new(x: &'a [f64], y: &'a [f64]) -> Self {
+    pub fn new(x: &'a [f64], y: &'a [f64]) -> Self {
         let n = x.len();
         let width: Vec<f64> = x.windows(2).map(|w| w[1] - w[0]).collect();
         let secant: Vec<f64> = y.windows(2).zip(&width).map(|(w, h)| (w[1] - w[0]) / h).collect();
@@ -31,7 +31,7 @@ impl<'a> MonotoneCubic<'a> {
     }
 
     /// Value at `x`; outside the points the nearest one's.
-    pub(crate) fn at(&self, x: f64) -> f64 {
+    pub fn at(&self, x: f64) -> f64 {
         let n = self.x.len();
         if x <= self.x[0] {
             return self.y[0];
