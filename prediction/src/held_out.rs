@@ -1,15 +1,16 @@
-//! How true the intervals are: one half of each group of the base predicts the other one, both ways.
+//! How true the intervals are: scenes of the base are predicted by others of their group. In a large group one half predicts the other
+//! one, both ways; in a small one each scene is predicted by all others.
 
 use super::base::{SolvedScene, solved};
 use super::conformal::{ErrorScale, SeenError};
-use super::{LEVEL, error, errors};
+use super::{FEWEST, LEVEL, error, errors};
 use impactcheck_physics::scene::Model;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Fewest scenes of a group whose halves are judged: each has the 19 that an interval of 95 % needs.
-const HALVES: usize = 40;
+/// Fewest scenes of a group that is halved: a prediction needs [`FEWEST`].
+const HALVED: usize = 2 * FEWEST;
 
-/// A quantity of a solved scene, with the interval that the other half of its group gives it.
+/// A quantity of a solved scene, with the interval that other scenes of its group give it.
 #[derive(Debug, Clone)]
 pub struct JudgedValue {
     /// Half width of the interval of model C, relative as [`super::scale`] has it.
@@ -27,7 +28,7 @@ impl JudgedValue {
     }
 }
 
-/// A solved scene with its quantities that the other half of its group predicts.
+/// A solved scene with its quantities that other scenes of its group predict.
 #[derive(Debug)]
 pub struct HeldOut {
     /// The scene.
@@ -41,7 +42,7 @@ pub fn strata() -> BTreeSet<&'static str> {
     solved().iter().map(|scene| scene.stratum.as_str()).collect()
 }
 
-/// The scenes of all groups that are large enough to be halved.
+/// The scenes of all groups that are large enough for predictions.
 pub fn held_out() -> Vec<HeldOut> {
     strata().into_iter().flat_map(of_stratum).collect()
 }
@@ -51,27 +52,30 @@ fn of_stratum(stratum: &str) -> Vec<HeldOut> {
         solved().iter().filter(|scene| scene.stratum == stratum).collect();
     // the order of the drawn scenes would part their edges
     all.sort_by(|a, b| a.hash.cmp(&b.hash));
-    if all.len() < HALVES {
-        return Vec::new();
+    let parts = match all.len() {
+        count if count < FEWEST => return Vec::new(),
+        count if count < HALVED => count,
+        _ => 2,
+    };
+    (0..parts).flat_map(|part| predicted_by_others(&all, parts, part)).collect()
+}
+
+/// Every `parts`th scene from number `part` on, predicted by the others.
+fn predicted_by_others(all: &[&'static SolvedScene], parts: usize, part: usize) -> Vec<HeldOut> {
+    let others = all.iter().enumerate().filter(|(number, _)| number % parts != part);
+    let others: Vec<&SolvedScene> = others.map(|(_, scene)| *scene).collect();
+    let own = all.iter().skip(part).step_by(parts);
+    let mut found: Vec<HeldOut> = own.map(|scene| HeldOut { scene, quantities: BTreeMap::new() }).collect();
+    for quantity in quantities(all) {
+        let known = errors(&others, quantity);
+        let Some(calibrated) = ErrorScale::new(&known, LEVEL) else { continue };
+        for held in &mut found {
+            let Some((signed, seen)) = error(held.scene, Model::C, quantity) else { continue };
+            let half_width = calibrated.half_width(&seen.place);
+            held.quantities.insert(quantity, JudgedValue { half_width, signed, seen });
+        }
     }
-    let half = |odd: usize| all.iter().skip(odd).step_by(2).copied();
-    (0..2)
-        .flat_map(|odd| {
-            let calibrates: Vec<&SolvedScene> = half(1 - odd).collect();
-            let mut found: Vec<HeldOut> =
-                half(odd).map(|scene| HeldOut { scene, quantities: BTreeMap::new() }).collect();
-            for quantity in quantities(&all) {
-                let known = errors(&calibrates, quantity);
-                let Some(calibrated) = ErrorScale::new(&known, LEVEL) else { continue };
-                for held in &mut found {
-                    let Some((signed, seen)) = error(held.scene, Model::C, quantity) else { continue };
-                    let half_width = calibrated.half_width(&seen.place);
-                    held.quantities.insert(quantity, JudgedValue { half_width, signed, seen });
-                }
-            }
-            found
-        })
-        .collect()
+    found
 }
 
 /// Names of the quantities of `scenes`.

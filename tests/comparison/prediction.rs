@@ -17,9 +17,9 @@ fn is_expected(within: usize, count: usize) -> bool {
     (within as f64 - LEVEL * n).abs() <= 3.3 * (n * LEVEL * (1.0 - LEVEL)).sqrt() + 1.0
 }
 
-/// One half of each group calibrates, the other one is predicted, and the other way round.
+/// Halves of large groups predict each other, single scenes of small groups are predicted by all others.
 #[test]
-fn intervals_from_one_half_of_the_base_hold_the_other_half() {
+fn intervals_from_some_scenes_of_the_base_hold_the_others() {
     let study = study::prediction::run(&mut |_| ()).unwrap();
     let count = |cell: &Cell| if let Cell::Number(share) = cell { *share } else { f64::NAN };
     let mut judged = 0;

@@ -48,7 +48,7 @@ fn table_1_is_within_the_tolerance_of_its_references() {
     }
 }
 
-/// The same choice on all scenes of the base, one half of which predicts the other: references decide.
+/// The same choice on all scenes of the base, from predictions by others of their group: references decide.
 #[test]
 fn choices_keep_their_tolerance_on_the_validation_base() {
     let study = auto::run(&mut |_| ()).unwrap();

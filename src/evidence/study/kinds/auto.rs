@@ -24,7 +24,7 @@ pub fn run(_: &mut Note) -> Result<Study> {
         TOLERANCES.iter().flat_map(|tolerance| held.iter().map(|held| row(held, *tolerance))).collect();
     let claims = TOLERANCES.iter().map(|tolerance| claim(*tolerance, &rows)).collect();
     let description = format!(
-        "The model that auto chooses of A, B (16 modes) and C on {} random scenes of the validation base, from the errors in the other half \
+        "The model that auto chooses of A, B (16 modes) and C on {} random scenes of the validation base, from the errors in other scenes \
          of their group. met = 1: the predicted error is within the tolerance. true_error: the largest of {} against the finite-element reference, \
          beyond the error of the reference itself; none where that is too large to decide.",
         held.len(),

@@ -81,8 +81,8 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 
 fn description(held: &[HeldOut]) -> String {
     let mut text = format!(
-        "Prediction intervals of 95 % on the {} solved random scenes of the validation base: one half of each group predicts the other one, \
-         both ways. `within`: share of the references' values that lie in their interval, the error of the reference added (`within_alone`: not added); \
+        "Prediction intervals of 95 % on the {} solved random scenes of the validation base: in groups of at least 60 scenes one half \
+         predicts the other one, both ways; in smaller ones each scene is predicted by all others. `within`: share of the references' values that lie in their interval, the error of the reference added (`within_alone`: not added); \
          it is expected between the two shares that follow in 95 of 100 such studies. Errors and half widths are relative to the value; of velocities to the impact \
          speed; of an efficiency below 5 % and an inner force below 5 % of the outer one to these. Bias and standard deviation are those of \
          models A, B and C, the reference's own error included.",
