@@ -193,12 +193,12 @@ fn a_contact_that_transmits_nothing_is_compared() {
 
 #[test]
 fn dry_and_wet_cases_hold() {
-    let report = run(16, 700_000, &|| ()).unwrap();
+    let report = run(24, 700_000, &|| ()).unwrap();
     assert_eq!(report.failures, []);
     assert!(report.compared > 5 && report.wet > 0, "{} compared, {} wet", report.compared, report.wet);
     assert!(report.worst.contains_key("wet_momentum"));
     assert!(report.moving_compared > 0 && report.worst.contains_key("moving_end_difference"));
-    assert!(report.sweep.points > 16 && report.sweep.wrong.is_empty(), "{:?}", report.sweep);
+    assert!(report.sweep.points > 24 && report.sweep.wrong.is_empty(), "{:?}", report.sweep);
 }
 
 /// A plate so light that both forces are nearly one: its peak is off by what the step's polynomials are.
