@@ -32,8 +32,8 @@ from .conftest import STEEL, document
 HARD = {"name": "hard", "youngs_modulus": 2e13, "poisson_ratio": 0.3, "density": 77800.0}
 """A hundred times as stiff as steel."""
 BLOCK: dict[str, Any] = {
-    "plate__radius": 0.012,
-    "plate__thickness": 0.008,
+    "plate__radius": 0.008,
+    "plate__thickness": 0.006,
     "plate__material": HARD,
     "outer__radius": 0.005,
     "inner__radius": 0.005,
@@ -232,12 +232,13 @@ def angular_momentum(found: Struck) -> tuple[float, float]:
 def test_a_free_plate_keeps_momentum_angular_momentum_and_energy() -> None:
     found = strike(
         oblique(
-            **SMALL,
+            **SMALL | {"plate__radius": 0.01},
             plate__edge="free",
             outer__offset=4e-3,
             outer__angle=0.6,
+            outer__speed=3.0,
             friction=0.3,
-            run={"end_time": 4e-5},
+            run={"end_time": 3e-5},
         )
     )
     run = found.run
@@ -259,13 +260,14 @@ def clamped_modes(ratio: float, most: float) -> tuple[list[float], list[float]]:
     values: list[float] = []
     shares: list[float] = []
     r = np.linspace(0.0, 1.0, 2001)
-    for n in range(int(most) + 1):
+    # on the axis every mode with a nodal diameter is at rest
+    for n in range(int(most) + 1 if ratio > 0.0 else 1):
         grid = np.linspace(max(0.5 * n, 1e-3), most, 800)
 
-        def edge(x: float, n: int = n) -> float:
-            return float(jv(n, x) * ivp(n, x) / iv(n, x) - jvp(n, x))
+        def edge(x: Any, n: int = n) -> Any:
+            return jv(n, x) * ivp(n, x) / iv(n, x) - jvp(n, x)
 
-        found = np.array([edge(x) for x in grid])
+        found = edge(grid)
         for k in np.flatnonzero(found[:-1] * found[1:] < 0.0):
             x = brentq(edge, grid[k], grid[k + 1], xtol=1e-12)
             shape = jv(n, x * r) - jv(n, x) / iv(n, x) * iv(n, x * r)
@@ -307,6 +309,7 @@ def test_a_plate_struck_off_its_centre_is_the_sum_of_its_modes() -> None:
         oblique(
             "both",
             2,
+            1.0,
             plate__radius=0.012,
             plate__thickness=1e-3,
             outer__radius=4e-3,
