@@ -79,7 +79,7 @@ def test_matrix_is_symmetric_and_positive() -> None:
     assert np.linalg.eigvalsh(matrix).min() > 0.0
 
 
-@pytest.mark.parametrize("edge", ["clamped", "free"])
+@pytest.mark.parametrize("edge", ["clamped", pytest.param("free", marks=pytest.mark.evidence)])
 def test_wet_frequencies_of_a_thin_plate(edge: str) -> None:
     """Lamb's formula for a clamped steel plate in water; all modes fall, the slow ones most."""
     plate = parse_scene(document(plate__thickness=RADIUS / 40.0, plate__edge=edge)).plate

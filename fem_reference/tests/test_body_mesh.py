@@ -366,11 +366,18 @@ def test_a_smooth_face_of_a_mesh_is_fixed_by_a_point(plate_msh: Path) -> None:
     assert np.array_equal(by_point.fixed, by_name.fixed)
 
 
-@pytest.mark.parametrize("order", [1, 2])
-@pytest.mark.parametrize("size", [2.0, 0.5], ids=["coarser", "finer"])
-def test_another_mesh_keeps_the_body(tmp_path: Path, order: int, size: float) -> None:
+@pytest.mark.parametrize(
+    ("size", "order"),
+    [
+        pytest.param(2.0, 1, id="coarser-1"),
+        pytest.param(0.5, 2, id="finer-2"),
+        pytest.param(2.0, 2, id="coarser-2", marks=pytest.mark.evidence),
+        pytest.param(0.5, 1, id="finer-1", marks=pytest.mark.evidence),
+    ],
+)
+def test_another_mesh_keeps_the_body(tmp_path: Path, size: float, order: int) -> None:
     """The finer one is that of a plate with one layer of elements."""
-    path = write_mesh(tmp_path / "plate.msh", plate, 3.5, order, PLATE_FACES)
+    path = write_mesh(tmp_path / "plate.msh", plate, 5.0, order, PLATE_FACES)
     own = result_of(path, "top", fixed=["rim"])
     if size > 1.0:
         body, fixed, contacts = remeshed(own.body, own.fixed, own.contacts, size, "plate")
