@@ -283,7 +283,8 @@ ENDING = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
 
 @pytest.mark.parametrize("deadly", [*ENDING, signal.SIGKILL])
 def test_killed_run_leaves_no_result(tmp_path: Path, deadly: signal.Signals) -> None:
-    scene = scene_file(tmp_path, reference__elements_per_contact_radius=12)
+    # much longer than the test waits for it
+    scene = scene_file(tmp_path, run__end_time=0.1)
     process = subprocess.Popen(
         [
             sys.executable,
