@@ -17,7 +17,7 @@ from fem_reference.body.abaqus import cell_of, read_abaqus
 from fem_reference.body.body import Body, body_of, fixed_mask
 from fem_reference.body.cells import HEX_EDGES, HEX_FACES, SOLIDS
 from fem_reference.body.files import gmsh_session, read_mesh
-from fem_reference.body.mesh_file import Meshed, meshed, write_body_mesh
+from fem_reference.body.mesh_file import Meshed, groups_of, meshed, write_body_mesh
 from fem_reference.body.remesh import remeshed
 from fem_reference.body.scene import parse_body_scene
 from fem_reference.body.source import MeshFile
@@ -25,7 +25,6 @@ from fem_reference.body.tets import qualities, volume
 from fem_reference.common.arrays import Floats
 from fem_reference.common.errors import SceneError
 from fem_reference.tests.bodies import PLATE_FACES, document, plate, run_mesh, write_mesh
-from fem_reference.tests.program import run_program
 
 CORNERS = np.array(
     [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
@@ -310,8 +309,8 @@ def test_a_mesh_is_taken_as_it_is(plate_msh: Path, tmp_path: Path) -> None:
     assert np.allclose(contact["curvatures"], 0.0, atol=1e-6) and contact["layers"] == 1
     assert about["contacts"]["inner"] is None
     # what was written is a body too, with what is fixed as a set
-    again = run_program("groups", tmp_path / "body.vtu")
-    names = {each["name"]: each["kind"] for each in json.loads(again.stdout)["groups"]}
+    again = groups_of(tmp_path / "body.vtu", None)
+    names = {each["name"]: each["kind"] for each in again["groups"]}
     assert names == {"fixed": "nodes", "material 0": "volume"}
 
 

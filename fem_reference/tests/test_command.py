@@ -247,7 +247,13 @@ def test_provenance_holds_scene_settings_and_versions(solved: tuple[Path, str, s
     ("changes", "options", "status", "words"),
     [
         ({"outer__kind": "wedge"}, (), 3, "outer.kind"),
-        ({"reference__geometry": "shell"}, (), 3, "reference.geometry"),
+        pytest.param(
+            {"reference__geometry": "shell"},
+            (),
+            3,
+            "reference.geometry",
+            marks=pytest.mark.evidence,
+        ),
         ({}, ("--courant", "1.01"), 12, "critical time step"),
         ({}, ("--stress-at", "-1"), 3, "--stress-at"),
     ],
@@ -278,10 +284,15 @@ def test_convergence_lists_all_meshes_and_explains_the_bands(
         assert entry["band"] == summary["uncertainty"][name]
 
 
-ENDING = (signal.SIGTERM, signal.SIGHUP, signal.SIGINT)
-
-
-@pytest.mark.parametrize("deadly", [*ENDING, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "deadly",
+    [
+        signal.SIGTERM,
+        signal.SIGINT,
+        signal.SIGKILL,
+        pytest.param(signal.SIGHUP, marks=pytest.mark.evidence),
+    ],
+)
 def test_killed_run_leaves_no_result(tmp_path: Path, deadly: signal.Signals) -> None:
     # much longer than the test waits for it
     scene = scene_file(tmp_path, run__end_time=0.1)

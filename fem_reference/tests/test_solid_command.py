@@ -222,6 +222,7 @@ def test_several_processes_fail_together_with_the_right_status(folder: Path) -> 
     assert not out.exists()
 
 
+@pytest.mark.evidence
 def test_rigid_spheres_are_harder(folder: Path, whole: Path) -> None:
     out = folder / "rigid"
     reference = {"geometry": "solid", "elements_per_contact_radius": 2, "element_order": 1}
