@@ -100,13 +100,16 @@ def test_wet_frequencies_of_a_thin_plate(edge: str) -> None:
     assert wet_frequencies(plate, mesh, 4, 1e-9) == pytest.approx(dry, rel=1e-9)
 
 
-def test_command_gives_the_ratio_of_a_scene(tmp_path: Path) -> None:
+def test_command_gives_the_modes_and_the_ratio_of_a_scene(tmp_path: Path) -> None:
     scene = tmp_path / "scene.json"
     scene.write_text(json.dumps(document(fluid=WATER)), encoding="utf-8")
-    arguments = ("modes", "--count", "2", "--wet", "--scene", str(scene))
+    arguments = ("modes", "--count", "6", "--wet", "--scene", str(scene))
     found = json.loads(run_program(*arguments).stdout)
+    frequencies = [mode["frequency"] for mode in found["modes"]]
+    assert frequencies == sorted(frequencies)
+    assert [mode["longitudinal"] for mode in found["modes"]] == [False] * 5 + [True]
     ratio = found["wet"]["frequencies"][0] / found["modes"][0]["frequency"]
     assert found["wet"]["added_mass_frequency_ratio"] == pytest.approx(ratio)
     assert ratio == pytest.approx(1.0 / math.sqrt(1.0 + 0.6538 * 1000.0 / 7780.0 * 16.5), rel=0.01)
     with pytest.raises(SolverError, match=r"\[fluid\]"):
-        COMMANDS["modes"](document(), Namespace(count=2, wet=True))
+        COMMANDS["modes"](document(), Namespace(count=6, wet=True))

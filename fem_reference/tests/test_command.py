@@ -420,12 +420,3 @@ def test_missing_compiler_is_named(tmp_path: Path) -> None:
     )
     assert result.returncode == 12
     assert "no-such-compiler" in json.loads(result.stdout.splitlines()[-1])["message"]
-
-
-def test_modes_command(tmp_path: Path) -> None:
-    result = call("modes", "--scene", scene_file(tmp_path), "--count", 6)
-    assert result.returncode == 0, result.stderr
-    modes = json.loads(result.stdout)["modes"]
-    frequencies = [mode["frequency"] for mode in modes]
-    assert frequencies == sorted(frequencies)
-    assert [mode["longitudinal"] for mode in modes] == [False] * 5 + [True]

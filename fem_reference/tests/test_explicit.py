@@ -218,7 +218,7 @@ def test_compiled_product_is_the_matrix_product(system: AxisymmetricSystem) -> N
             marks=pytest.mark.evidence,
         ),
         {"inner__gap": 5e-6},
-        {"plate__damping_ratio": 0.03},
+        pytest.param({"plate__damping_ratio": 0.03}, marks=pytest.mark.evidence),
     ],
 )
 def test_no_contact_after_the_end_of_the_run(changes: dict[str, object]) -> None:

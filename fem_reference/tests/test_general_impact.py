@@ -198,7 +198,7 @@ def test_rigid_motions_of_a_free_body(made: tuple[Scene, ImpactModel]) -> None:
     assert flexibility(loop, 0, load, floating) > 0.0
 
 
-@pytest.mark.parametrize("body", [0, 1])
+@pytest.mark.parametrize("body", [0, pytest.param(1, marks=pytest.mark.evidence)])
 def test_two_levels_solve_what_the_diagonal_solves_in_fewer_steps(
     made: tuple[Scene, ImpactModel], body: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -21,7 +21,7 @@ from fem_reference.plate_impact.scene import Scene, parse_scene
 
 from .conftest import STEEL, document
 
-ELEMENTS = 5
+ELEMENTS = 4
 FEW = 2
 """Where a series is compared with itself."""
 
