@@ -42,7 +42,7 @@ def call(*arguments: object, **changes: str) -> subprocess.CompletedProcess[str]
 
 def scene_file(folder: Path, **changes: Any) -> Path:
     path = folder / "scene.json"
-    small = {"reference__elements_per_contact_radius": 4}
+    small = {"reference__elements_per_contact_radius": 3}
     path.write_text(json.dumps(document(**{**small, **changes})))
     return path
 

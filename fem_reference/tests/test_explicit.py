@@ -212,7 +212,7 @@ def test_compiled_product_is_the_matrix_product(system: AxisymmetricSystem) -> N
     "changes",
     [
         {},
-        {"plate__edge": "free"},
+        pytest.param({"plate__edge": "free"}, marks=pytest.mark.evidence),
         pytest.param(
             {"plate__edge": "simply-supported", "outer__radius": 0.006},
             marks=pytest.mark.evidence,

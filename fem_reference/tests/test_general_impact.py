@@ -101,8 +101,8 @@ def test_a_contact_that_outlasts_the_echo_of_the_wall_gets_a_warning(
 def test_elements_of_a_file_that_no_mesh_of_the_series_cuts_get_a_warning(
     tmp_path: Path, size: float, warnings: int
 ) -> None:
-    path = write_mesh(tmp_path / "block.msh", lambda: gmsh.model.occ.addBox(0, 0, 0, 9, 9, 4), size)
-    body = struck(path, [0.0045, 0.0045, 0.004], unit=1e-3)
+    path = write_mesh(tmp_path / "block.msh", lambda: gmsh.model.occ.addBox(0, 0, 0, 6, 6, 4), size)
+    body = struck(path, [0.003, 0.003, 0.004], unit=1e-3)
     scene = parse_scene(document(body=body, reference__elements_per_contact_radius=1.0))
     expected = estimate(scene)
     sizes = Sizes(scene, expected.radii, expected.duration, 0.6)
@@ -226,7 +226,7 @@ def test_a_free_body_keeps_the_momentum(
 ) -> None:
     """What the sphere loses, the block's centre of mass has."""
     # a fast sphere has a large contact radius, thus large elements
-    few = {"reference__elements_per_contact_radius": 1.0, "outer__speed": 5.0}
+    few = {"reference__elements_per_contact_radius": 1.0, "outer__speed": 10.0}
     scene, solution = solved({"body": block[1]["body"]} | few, block[0])
     found, mass = quantities(scene, solution), BLOCK_MASS
     assert solution.run.momentum_residual < 1e-10

@@ -162,7 +162,13 @@ def test_energy_of_an_impact_that_yields_is_accounted_for() -> None:
     assert not motion.dents.reach_the_edge()
 
 
-@pytest.mark.parametrize("change", [{"plate__damping_ratio": 0.04}, {"friction": 0.3}])
+@pytest.mark.parametrize(
+    "change",
+    [
+        pytest.param({"plate__damping_ratio": 0.04}, marks=pytest.mark.evidence),
+        {"friction": 0.3},
+    ],
+)
 def test_balance_closes_with_plasticity_and_another_loss(change: dict[str, float]) -> None:
     run, motion, _ = impact(1, **STEELS, **change, reference__elements_per_contact_radius=3)
     assert run.energy_residual < 1e-6
