@@ -212,10 +212,13 @@ def test_compiled_product_is_the_matrix_product(system: AxisymmetricSystem) -> N
     "changes",
     [
         {},
-        {"plate__edge": "free"},
-        {"plate__edge": "simply-supported", "outer__radius": 0.006},
+        pytest.param({"plate__edge": "free"}, marks=pytest.mark.evidence),
+        pytest.param(
+            {"plate__edge": "simply-supported", "outer__radius": 0.006},
+            marks=pytest.mark.evidence,
+        ),
         {"inner__gap": 5e-6},
-        {"plate__damping_ratio": 0.03},
+        pytest.param({"plate__damping_ratio": 0.03}, marks=pytest.mark.evidence),
     ],
 )
 def test_no_contact_after_the_end_of_the_run(changes: dict[str, object]) -> None:

@@ -15,6 +15,7 @@ from fem_reference.axisymmetric.modal import first_frequency
 from fem_reference.axisymmetric.system import INNER, PLATE, AxisymmetricSystem, critical_time_step
 from fem_reference.common.errors import SceneError
 from fem_reference.explicit.energies import energies_of
+from fem_reference.explicit.levels import MOST_LEVELS
 from fem_reference.explicit.loop import SerialLoop
 from fem_reference.plate_impact.axisymmetric_motion import AxisymmetricMotion
 from fem_reference.plate_impact.result import of_run
@@ -199,7 +200,10 @@ def runs() -> dict[str, tuple[Scene, Run]]:
     found = {}
     for name, scene in scenes.items():
         system, duration = make_system(scene)
-        found[name] = scene, integrate(system, scene, duration, end_time=60e-6, most_levels=1)
+        # balances of one level are exact; nobody looks at those of the dry run
+        levels = MOST_LEVELS if name == "dry" else 1
+        run = integrate(system, scene, duration, end_time=60e-6, most_levels=levels)
+        found[name] = scene, run
     return found
 
 

@@ -29,7 +29,10 @@ def plate(**changes: object) -> Plate:
     return parse_scene(document(**{f"plate__{key}": value for key, value in changes.items()})).plate
 
 
-@pytest.mark.parametrize("edge", sorted(LEISSA))
+@pytest.mark.parametrize(
+    "edge",
+    ["clamped", "free", pytest.param("simply-supported", marks=pytest.mark.evidence)],
+)
 def test_thin_plate_leissa(edge: str) -> None:
     thin = plate(edge=edge, thickness=0.033 / 100)
     modes = plate_modes(thin, modal_plate_mesh(thin), len(LEISSA[edge]))

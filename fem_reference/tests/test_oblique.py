@@ -32,8 +32,8 @@ from .conftest import STEEL, document
 HARD = {"name": "hard", "youngs_modulus": 2e13, "poisson_ratio": 0.3, "density": 77800.0}
 """A hundred times as stiff as steel."""
 BLOCK: dict[str, Any] = {
-    "plate__radius": 0.012,
-    "plate__thickness": 0.008,
+    "plate__radius": 0.008,
+    "plate__thickness": 0.006,
     "plate__material": HARD,
     "outer__radius": 0.005,
     "inner__radius": 0.005,
@@ -129,7 +129,8 @@ def test_what_an_oblique_impact_cannot_have() -> None:
 @pytest.mark.parametrize("rigid", [pytest.param("both", marks=pytest.mark.evidence), "none"])
 def test_a_half_struck_at_the_centre_is_what_a_quarter_is(rigid: str) -> None:
     # The meshes are not the same: force peaks of linear elements differ by up to 1.3 % for that.
-    scene = oblique(rigid, 2 if rigid == "both" else 1, **SMALL, outer__speed=1.5)
+    small = SMALL | {"plate__radius": 0.01}
+    scene = oblique(rigid, 2 if rigid == "both" else 1, **small, outer__speed=1.5)
     half, quarter = (strike(scene, half) for half in (True, False))
     assert half.run.sideways is not None
     assert np.abs(half.run.sideways.velocities).max() < 1e-3 * half.scene.speed
@@ -138,7 +139,10 @@ def test_a_half_struck_at_the_centre_is_what_a_quarter_is(rigid: str) -> None:
         assert found[name] == pytest.approx(value, rel=0.01 if rigid == "both" else 0.03), name
 
 
-@pytest.mark.parametrize(("rigid", "elements"), [("both", 2.0), ("inner", 2.5)])
+@pytest.mark.parametrize(
+    ("rigid", "elements"),
+    [("both", 2.0), pytest.param("inner", 2.5, marks=pytest.mark.evidence)],
+)
 def test_a_sliding_ball_loses_friction_times_the_normal_impulse(
     rigid: str, elements: float
 ) -> None:
@@ -232,12 +236,13 @@ def angular_momentum(found: Struck) -> tuple[float, float]:
 def test_a_free_plate_keeps_momentum_angular_momentum_and_energy() -> None:
     found = strike(
         oblique(
-            **SMALL,
+            **SMALL | {"plate__radius": 0.01},
             plate__edge="free",
             outer__offset=4e-3,
             outer__angle=0.6,
+            outer__speed=3.0,
             friction=0.3,
-            run={"end_time": 4e-5},
+            run={"end_time": 3e-5},
         )
     )
     run = found.run
@@ -259,13 +264,14 @@ def clamped_modes(ratio: float, most: float) -> tuple[list[float], list[float]]:
     values: list[float] = []
     shares: list[float] = []
     r = np.linspace(0.0, 1.0, 2001)
-    for n in range(int(most) + 1):
+    # on the axis every mode with a nodal diameter is at rest
+    for n in range(int(most) + 1 if ratio > 0.0 else 1):
         grid = np.linspace(max(0.5 * n, 1e-3), most, 800)
 
-        def edge(x: float, n: int = n) -> float:
-            return float(jv(n, x) * ivp(n, x) / iv(n, x) - jvp(n, x))
+        def edge(x: Any, n: int = n) -> Any:
+            return jv(n, x) * ivp(n, x) / iv(n, x) - jvp(n, x)
 
-        found = np.array([edge(x) for x in grid])
+        found = edge(grid)
         for k in np.flatnonzero(found[:-1] * found[1:] < 0.0):
             x = brentq(edge, grid[k], grid[k + 1], xtol=1e-12)
             shape = jv(n, x * r) - jv(n, x) / iv(n, x) * iv(n, x * r)
@@ -307,6 +313,7 @@ def test_a_plate_struck_off_its_centre_is_the_sum_of_its_modes() -> None:
         oblique(
             "both",
             2,
+            1.0,
             plate__radius=0.012,
             plate__thickness=1e-3,
             outer__radius=4e-3,

@@ -162,7 +162,13 @@ def test_energy_of_an_impact_that_yields_is_accounted_for() -> None:
     assert not motion.dents.reach_the_edge()
 
 
-@pytest.mark.parametrize("change", [{"plate__damping_ratio": 0.04}, {"friction": 0.3}])
+@pytest.mark.parametrize(
+    "change",
+    [
+        pytest.param({"plate__damping_ratio": 0.04}, marks=pytest.mark.evidence),
+        {"friction": 0.3},
+    ],
+)
 def test_balance_closes_with_plasticity_and_another_loss(change: dict[str, float]) -> None:
     run, motion, _ = impact(1, **STEELS, **change, reference__elements_per_contact_radius=3)
     assert run.energy_residual < 1e-6
@@ -262,7 +268,12 @@ def test_first_yield_lies_where_hertz_pressure_puts_it() -> None:
 
 @pytest.mark.parametrize(
     ("ratio", "restitution", "within"),
-    [(2.1, 0.975, 0.003), (26.0, 0.730, 0.003), (53.0, 0.654, 0.003), (105.0, 0.572, 0.008)],
+    [
+        (2.1, 0.975, 0.003),
+        pytest.param(26.0, 0.730, 0.003, marks=pytest.mark.evidence),
+        pytest.param(53.0, 0.654, 0.003, marks=pytest.mark.evidence),
+        (105.0, 0.572, 0.008),
+    ],
 )
 def test_rebound_from_a_rigid_wall(ratio: float, restitution: float, within: float) -> None:
     """As other finite elements, made without this program, have it.

@@ -32,13 +32,18 @@ def seat(terms: list[dict[str, float]], softer: float = 1.0) -> SeatScene:
     if not terms:
         del material["relaxation"]
     return parse_seat_scene(
-        seat_document(True, seat__material=material, reference__element_order=1)
+        seat_document(
+            True,
+            seat__material=material,
+            reference__element_order=1,
+            run={"end_time": 60e-6},
+        )
     )
 
 
 @pytest.fixture(scope="module")
 def mesh() -> TetMesh:
-    return seat_mesh(seat([]), 0.5)
+    return seat_mesh(seat([]), 0.4)
 
 
 def launch(design: SeatScene, mesh: TetMesh, **options: Any) -> SeatRun:

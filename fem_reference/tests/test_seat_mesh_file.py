@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import json
+from argparse import Namespace
 from pathlib import Path
 
 import meshio
 import numpy as np
 import pytest
 
+from fem_reference.common.errors import SceneError, SolverError
+from fem_reference.seal_seat.command import COMMANDS
 from fem_reference.tests.program import run_program
 from fem_reference.tests.seal_seat_scenes import seat_document
 
 
-def test_the_mesh_file_is_what_others_read(tmp_path: Path) -> None:
+def test_the_mesh_file_is_what_others_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = tmp_path / "scene.json"
     path.write_text(json.dumps(seat_document(True)), encoding="utf-8")
     out = tmp_path / "seat.vtu"
@@ -30,13 +35,14 @@ def test_the_mesh_file_is_what_others_read(tmp_path: Path) -> None:
         assert np.allclose(grid.points[cells[:, node]], middle, atol=1e-12)
     assert not list(tmp_path.glob("*partial*"))
     # it says which geometry it is one of, and whoever has another one is told
-    own = run_program("modes", "--scene", path, "--count", "1", "--mesh", out)
-    assert own.returncode == 0, own.stderr
-    path.write_text(json.dumps(seat_document(True) | {"geometry_hash": "other"}), encoding="utf-8")
-    other = run_program("modes", "--scene", path, "--count", "1", "--mesh", out)
-    assert other.returncode == 12 and "made for another geometry" in other.stderr
-    refused = run_program("mesh", "--scene", path, "--out", out, "--size-factor", "0.01")
-    assert refused.returncode == 3 and "--size-factor is 0.01" in refused.stderr
+    modes = Namespace(count=1, mesh=out)
+    COMMANDS["modes"](seat_document(True), modes)
+    assert json.loads(capsys.readouterr().out)["modes"][0]["frequency"] > 0.0
+    with pytest.raises(SolverError, match="made for another geometry"):
+        COMMANDS["modes"](seat_document(True) | {"geometry_hash": "other"}, modes)
+    mesh = Namespace(out=out, resolution="paper", size_factor=0.01)
+    with pytest.raises(SceneError, match=r"--size-factor is 0\.01"):
+        COMMANDS["mesh"](seat_document(True), mesh)
 
 
 @pytest.mark.parametrize("name", ["seat.json", "seat.vtu"])
@@ -47,7 +53,8 @@ def test_a_mesh_replaces_no_file_of_the_users(tmp_path: Path, name: str) -> None
     scene.write_text(text, encoding="utf-8")
     (tmp_path / name).write_text(text, encoding="utf-8")
     before = sorted(tmp_path.iterdir())
-    done = run_program("mesh", "--scene", scene, "--out", tmp_path / "seat.vtu")
-    assert done.returncode == 12 and f"{name} exists and is no mesh" in done.stderr
+    mesh = Namespace(out=tmp_path / "seat.vtu", resolution="paper", size_factor=1.0)
+    with pytest.raises(SolverError, match=f"{name} exists and is no mesh"):
+        COMMANDS["mesh"](seat_document(True), mesh)
     assert (tmp_path / name).read_text(encoding="utf-8") == text
     assert sorted(tmp_path.iterdir()) == before

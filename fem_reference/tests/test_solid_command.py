@@ -199,7 +199,9 @@ def steps(folder: Path, processes: int, threads: int) -> dict[str, Any]:
         return dict(values)
 
 
-@pytest.mark.parametrize(("processes", "threads"), [(3, 1), (2, 2)])
+@pytest.mark.parametrize(
+    ("processes", "threads"), [pytest.param(3, 1, marks=pytest.mark.evidence), (2, 2)]
+)
 def test_several_processes_step_as_one(
     folder: Path, one_process: dict[str, Any], processes: int, threads: int
 ) -> None:
@@ -220,14 +222,7 @@ def test_several_processes_fail_together_with_the_right_status(folder: Path) -> 
     assert not out.exists()
 
 
-def test_an_unstable_step_is_refused(folder: Path) -> None:
-    out = folder / "unstable"
-    done = solve(scene(folder), out, "--courant", "1.01")
-    assert done.returncode == 12
-    assert "critical time step" in done.stderr
-    assert not out.exists()
-
-
+@pytest.mark.evidence
 def test_rigid_spheres_are_harder(folder: Path, whole: Path) -> None:
     out = folder / "rigid"
     reference = {"geometry": "solid", "elements_per_contact_radius": 2, "element_order": 1}

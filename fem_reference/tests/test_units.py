@@ -111,7 +111,7 @@ def test_a_unit_is_valid(units: dict[str, Path], version: str) -> None:
     assert units[version].stat().st_size < 5e6
 
 
-@pytest.mark.parametrize("count", [40, pytest.param(500, marks=pytest.mark.evidence)])
+@pytest.mark.parametrize("count", [20, pytest.param(500, marks=pytest.mark.evidence)])
 @pytest.mark.parametrize("version", ["2", "3"])
 def test_any_steps_give_the_results_of_the_command(
     units: dict[str, Path],

@@ -287,7 +287,7 @@ def random_settings(
 
 
 @pytest.mark.parametrize(
-    "count", [6, pytest.param(200, marks=pytest.mark.evidence)], ids=["some", "many"]
+    "count", [3, pytest.param(200, marks=pytest.mark.evidence)], ids=["some", "many"]
 )
 def test_random_settings_give_the_numbers_of_the_command(
     opened: Open, tmp_path: Path, count: int
