@@ -82,17 +82,20 @@ def test_matrix_is_symmetric_and_positive() -> None:
     assert np.linalg.eigvalsh(matrix).min() > 0.0
 
 
-@pytest.mark.parametrize("edge", ["clamped", pytest.param("free", marks=pytest.mark.evidence)])
-def test_wet_frequencies_of_a_thin_plate(edge: str) -> None:
+@pytest.mark.parametrize(
+    ("edge", "slender"),
+    [("clamped", 20.0), pytest.param("free", 40.0, marks=pytest.mark.evidence)],
+)
+def test_wet_frequencies_of_a_thin_plate(edge: str, slender: float) -> None:
     """Lamb's formula for a clamped steel plate in water; all modes fall, the slow ones most."""
-    plate = parse_scene(document(plate__thickness=RADIUS / 20.0, plate__edge=edge)).plate
+    plate = parse_scene(document(plate__thickness=RADIUS / slender, plate__edge=edge)).plate
     mesh = modal_plate_mesh(plate)
     dry = np.array([mode.frequency for mode in plate_modes(plate, mesh, 4)])
     wet = wet_frequencies(plate, mesh, 4, 1000.0)
     ratios = wet / dry
     assert np.all(np.diff(ratios) > 0.0) and ratios[-1] < 0.95
     if edge == "clamped":
-        lamb = 1.0 / math.sqrt(1.0 + LAMB * 1000.0 * 20.0 / 7780.0)
+        lamb = 1.0 / math.sqrt(1.0 + LAMB * 1000.0 * slender / 7780.0)
         # Of Lamb's shape; the true one moves 2.3 % less.
         assert lamb < ratios[0] < 1.012 * lamb
         more = wet_frequencies(plate, mesh, 8, 1000.0)
