@@ -38,12 +38,12 @@ SECOND := $(PLATES) $(patsubst %,scenes/validation/%.toml,free-plate heavy-on-li
 # the models for live pages
 WASM   := target/wasm32-unknown-unknown/live/impactcheck_live.wasm
 
-.PHONY: test passed setup lint lint-python live-page live-page-or-none rust docs wheel python live gate report solutions validation evidence
+.PHONY: test passed setup lint lint-python live-page live-page-or-none rust docs wheel reference-tests package-tests live gate report solutions validation evidence
 
 # packages are fetched while the compiler works; what fails within seconds comes first
 test:
 	@$(MAKE) --no-print-directory -j3 setup lint lint-python live-page-or-none
-	@$(MAKE) --no-print-directory -j5 --output-sync=line rust docs python live gate
+	@$(MAKE) --no-print-directory -j6 --output-sync=line reference-tests rust package-tests live gate docs
 	@$(MAKE) --no-print-directory passed
 
 # a program of its own: `setup` may have installed the browser
@@ -76,7 +76,7 @@ live-page-or-none:
 rust: lint
 	@if cargo nextest --version >/dev/null 2>&1; then cargo nextest run --release --workspace --no-fail-fast $(if $(UNCHECKED),-E 'not test(/^$(UNCHECKED)/)'); \
 	else cargo test --release --workspace $(if $(UNCHECKED),-- --skip $(UNCHECKED)); fi
-	cargo test --release --workspace --doc
+	env -u MAKEFLAGS cargo test --release --workspace --doc
 
 docs:
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --quiet
@@ -88,9 +88,12 @@ wheel: setup
 	@$(WHEEL)/bin/python -c 'import xdist' 2>/dev/null || { $(PYTHON) -m venv $(WHEEL) && $(WHEEL)/bin/python -m pip install --quiet mypy numpy pytest pytest-xdist xarray; }
 	$(WHEEL)/bin/python -m pip install --quiet --force-reinstall --no-deps target/wheels/*.whl
 
-python: setup wheel
+reference-tests: setup
 	cargo build --release
 	$(TOOL) -m pytest -q -n auto --dist worksteal fem_reference validation live
+
+package-tests: setup wheel
+	cargo build --release
 	guide/generate target/release/impactcheck --check
 	$(PACKAGE_TESTS) python
 	$(WHEEL)/bin/python -m mypy.stubtest impactcheck._core
