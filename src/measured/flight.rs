@@ -232,17 +232,18 @@ mod tests {
     }
 
     /// Short and long flights; noise that is white, and that filters from a single pole to steep ones limit. A fit that takes all samples for
-    /// independent states intervals that hold the step in 37 and 7 % at 100 and 20 kHz.
+    /// independent states intervals that hold the step in 37 % at 100 kHz.
     #[test]
     fn intervals_of_95_percent_hold_the_step_in_95_percent_of_the_records() {
         assert_95_percent(40e-6, None, 400);
         assert_95_percent(40e-6, Some((8, 100e3)), 400);
-        assert_95_percent(40e-6, Some((1, 20e3)), 1200);
         assert_95_percent(300e-6, Some((2, 100e3)), 200);
     }
 
+    /// That fit would hold it in 7 %.
     #[test]
     fn intervals_of_95_percent_hold_the_step_under_slow_noise() {
+        assert_95_percent(40e-6, Some((1, 20e3)), 1200);
         assert_95_percent(40e-6, Some((8, 20e3)), 400);
         assert_95_percent(300e-6, Some((1, 20e3)), 400);
     }
