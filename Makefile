@@ -42,8 +42,8 @@ WASM   := target/wasm32-unknown-unknown/live/impactcheck_live.wasm
 
 # packages are fetched while the compiler works; what fails within seconds comes first
 test:
-	@$(MAKE) --no-print-directory -j3 setup lint lint-python live-page-or-none
-	@$(MAKE) --no-print-directory -j6 --output-sync=line reference-tests rust package-tests live gate docs
+	@$(MAKE) --no-print-directory -j3 setup live-page-or-none lint lint-python docs
+	@$(MAKE) --no-print-directory -j6 --output-sync=line reference-tests rust package-tests live gate
 	@$(MAKE) --no-print-directory passed
 
 # a program of its own: `setup` may have installed the browser
@@ -78,7 +78,7 @@ rust: lint
 	else cargo test --release --workspace $(if $(UNCHECKED),-- --skip $(UNCHECKED)); fi
 	env -u MAKEFLAGS cargo test --release --workspace --doc
 
-docs:
+docs: lint
 	RUSTDOCFLAGS="-D warnings" cargo doc --release --workspace --no-deps --quiet
 
 # only the package's own crate is compiled for it, the rest serves tests and program too
