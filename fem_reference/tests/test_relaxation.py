@@ -110,7 +110,7 @@ def run_of(scene_document: dict[str, Any], **options: Any) -> Run:
 def test_terms_that_never_or_at_once_relax_leave_an_elastic_material() -> None:
     """Long after every time constant the modulus is the lasting one."""
     bodies = ("outer", "plate", "inner")
-    # both spheres have come off by then
+    # both spheres have left the plate then
     end = 1.2e-4
     elastic = run_of(document(), end_time=end)
     slow = run_of(relaxing(*bodies, terms=[{"ratio": 0.3, "time": 1e3}]), end_time=end)
