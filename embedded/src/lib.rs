@@ -32,11 +32,12 @@ pub fn files(_: TokenStream) -> TokenStream {
     format!("({:?}, &[{entries}])", format!("{hash:016x}")).parse().expect("Rust")
 }
 
-/// An expression of type `&[u8]`: the dynamic library of the crate `impactcheck-fmu`, which cargo builds before everything that depends
+/// An expression of type `&[u8]`: the dynamic library of the crate `impactcheck-fmu-library`, which cargo builds before everything that depends
 /// on it; empty where nothing is built but only checked.
 #[proc_macro]
 pub fn unit(_: TokenStream) -> TokenStream {
-    let name = format!("{}impactcheck_fmu{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let name =
+        format!("{}impactcheck_fmu_library{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let arguments: Vec<String> = std::env::args().collect();
     // where the compiler is told to look for dependencies
     let folders = arguments.iter().filter_map(|argument| argument.strip_prefix("dependency="));

@@ -9,7 +9,7 @@ use source::{Language, Source, kinds, sources};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Packages whose rooms (files and folders at their top) are looked at: the folder, and what an import of it starts with.
-const PACKAGES: [&str; 3] = ["physics/src", "src", "fem_reference"];
+const PACKAGES: [&str; 3] = ["physics/src", "app/src", "fem_reference"];
 
 /// Fails unless `found` has exactly `bound` entries.
 fn ratchet(what: &str, found: &[String], bound: usize) {
@@ -51,7 +51,7 @@ fn rooms_that_import_each_other() {
 /// Drawings take numbers and labels: they know no scene, no result, no report.
 #[test]
 fn rooms_that_drawings_import() {
-    let imports = imports("src");
+    let imports = imports("app/src");
     let found: Vec<&str> =
         imports.keys().filter(|(room, _)| room == "plot").map(|(_, other)| &**other).collect();
     assert_eq!(found, ["format"], "besides numbers in words, `plot` imports nothing");
@@ -104,14 +104,14 @@ fn circular(package: &str) -> Vec<String> {
 /// What shows that the program is right and fast is no part of it.
 #[test]
 fn imports_of_evidence_outside_the_command_line() {
-    let room = |source: &Source| source.room("src").map(str::to_owned);
+    let room = |source: &Source| source.room("app/src").map(str::to_owned);
     let product = |source: &Source| {
-        source.path.starts_with("src/")
+        source.path.starts_with("app/src/")
             && !matches!(room(source).as_deref(), Some("cli" | "evidence" | "lib.rs"))
     };
     let found: Vec<String> = sources()
         .filter(product)
-        .filter(|source| source.imports("src").contains(&"evidence".to_owned()))
+        .filter(|source| source.imports("app/src").contains(&"evidence".to_owned()))
         .map(|source| source.path)
         .collect();
     ratchet("files that import evidence", &found, 0);

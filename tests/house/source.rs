@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 /// Folders with the sources of product and reference.
-const FOLDERS: [&str; 8] = [
+const FOLDERS: [&str; 9] = [
+    "app/src",
     "embedded/src",
     "fem_reference",
     "fmu/src",

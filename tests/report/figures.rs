@@ -111,7 +111,7 @@ fn figures_for_papers_have_their_width_readable_type_and_everything_inside() {
 /// Nothing leaves the drawing, text as the embedded font draws it.
 fn assert_inside(svg: &str, what: &str) {
     let mut options = resvg::usvg::Options { font_family: "DejaVu Sans".into(), ..Default::default() };
-    let font = concat!(env!("CARGO_MANIFEST_DIR"), "/src/plot/fonts/DejaVuSans.ttf");
+    let font = concat!(env!("CARGO_MANIFEST_DIR"), "/app/src/plot/fonts/DejaVuSans.ttf");
     options.fontdb_mut().load_font_data(std::fs::read(font).unwrap());
     let tree = resvg::usvg::Tree::from_str(svg, &options).unwrap();
     let inside = tree.root().abs_stroke_bounding_box();

@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn range_and_curvature_of_a_parabola() {
         let template =
-            Template::parse("base", include_str!("../../scenes/scaled-plate-r10.toml")).expect("scene");
+            Template::parse("base", include_str!("../../../scenes/scaled-plate-r10.toml")).expect("scene");
         let variable = Variable::parse("plate.radius=20mm..60mm", &template).expect("variable");
         // 0.8 (1 - ((x - 40 mm)/100 mm)^2): 1 % is lost at 10 mm, the second derivative is -160/m^2
         let parabola = |x: f64| Some(0.8 * (1.0 - ((x - 0.04) / 0.1).powi(2)));

@@ -214,8 +214,8 @@ mod tests {
     use super::{dat, frd, packed};
 
     // three steps of a cube on its base whose top moves downwards, as CalculiX 2.20 writes them
-    const DAT: &str = include_str!("../../tests/fixtures/calculix-box.dat");
-    const FRD: &str = include_str!("../../tests/fixtures/calculix-box.frd");
+    const DAT: &str = include_str!("../../../tests/fixtures/calculix-box.dat");
+    const FRD: &str = include_str!("../../../tests/fixtures/calculix-box.frd");
 
     #[test]
     fn what_is_printed_becomes_columns_with_means_over_their_sets() {

@@ -34,7 +34,7 @@
 //! use impactcheck::uncertainty::{Request, Samples, study};
 //! use std::path::Path;
 //!
-//! let file = Path::new("examples/uncertainty/table1-r10.toml");
+//! let file = Path::new("../examples/uncertainty/table1-r10.toml");
 //! let template = Template::read(file)?;
 //! let request = Request { samples: Samples::Rows(64), ..Request::new(Model::B, 0.05) };
 //! let result = study((file, &template), &request, None, &|_| ())?;

@@ -99,12 +99,12 @@ mod tests {
     use crate::kinds;
 
     fn taken(changed: &[(&str, &str)]) -> bool {
-        let text = include_str!("../../../examples/bodies/bracket.toml").to_owned();
+        let text = include_str!("../../../../examples/bodies/bracket.toml").to_owned();
         let text = changed.iter().fold(text, |text, (from, to)| {
             assert!(text.contains(from), "{from}");
             text.replace(from, to)
         });
-        let scene = Scene::parse("examples/bodies/bracket.toml", &text).expect("valid");
+        let scene = Scene::parse("../examples/bodies/bracket.toml", &text).expect("valid");
         kinds::of(&scene).calculix_takes(&scene)
     }
 

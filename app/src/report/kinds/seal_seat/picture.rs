@@ -256,7 +256,7 @@ mod tests {
 
     #[test]
     fn the_hollow_meets_the_sphere_along_the_cone_and_nowhere_deeper() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/seal-seat.toml");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/fixtures/seal-seat.toml");
         let scene = Scene::read(path).expect("scene");
         let scene = scene.seal_seat().expect("seal seat");
         let outline = hollow(scene, -1.0);

@@ -184,7 +184,7 @@ impl FeatureComparison {
 mod tests {
     use super::*;
 
-    const PLATE: &str = include_str!("../tests/fixtures/plate-impact.toml");
+    const PLATE: &str = include_str!("../../tests/fixtures/plate-impact.toml");
 
     fn names(scene: &Scene) -> Vec<&'static str> {
         features().filter(|feature| feature.is_in(scene)).map(|feature| feature.name).collect()
@@ -200,9 +200,9 @@ mod tests {
         assert_eq!(names(&plain), ["clamped edge"]);
         let text = PLATE.replace("edge      = \"clamped\"", "edge = \"free\"\ndamping_ratio = 0.1");
         assert_eq!(names(&scene(&text)), ["free edge", "damped plate"]);
-        let seat = include_str!("../tests/fixtures/seal-seat.toml");
+        let seat = include_str!("../../tests/fixtures/seal-seat.toml");
         assert_eq!(names(&Scene::parse("seal-seat.toml", seat).expect("valid")), ["seal seat"]);
-        let relaxing = include_str!("../scenes/validation/seal-seat-relaxing.toml");
+        let relaxing = include_str!("../../scenes/validation/seal-seat-relaxing.toml");
         assert_eq!(
             names(&Scene::parse("seal-seat.toml", relaxing).expect("valid")),
             ["seal seat", "seal seat, relaxing"]

@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn scenes_may_bound_their_impacts() {
         let scene = |key: &str| {
-            let text = include_str!("../../scenes/examples/repeated-impacts.toml");
+            let text = include_str!("../../../scenes/examples/repeated-impacts.toml");
             Scene::parse("repeated-impacts", &format!("{text}\n[tolerances.C]\n{key} = 0.04\n"))
         };
         let tolerances = &scene("impact_efficiency").unwrap().tolerances;

@@ -76,7 +76,7 @@ mod tests {
     #[test]
     fn the_speed_in_the_intended_direction_is_a_projection() {
         let scene =
-            Template::parse("seat", include_str!("../../scenes/seal-seat-improved.toml")).expect("scene");
+            Template::parse("seat", include_str!("../../../scenes/seal-seat-improved.toml")).expect("scene");
         let objective = Objective::of(None, None, scene.scene()).expect("a seal seat's");
         let along = |angle: f64| {
             let [x, z] = [2.0 * angle.to_radians().sin(), 2.0 * angle.to_radians().cos()];
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn objectives_are_quantities_of_the_kind() {
         let plate =
-            Template::parse("base", include_str!("../../scenes/scaled-plate-r10.toml")).expect("scene");
+            Template::parse("base", include_str!("../../../scenes/scaled-plate-r10.toml")).expect("scene");
         assert_eq!(Objective::of(None, None, plate.scene()).unwrap(), Objective::Quantity("efficiency", "1"));
         assert_eq!(Objective::of(Some("inner_force_peak"), None, plate.scene()).unwrap().unit(), "N");
         let meeting = |struck: &str| {

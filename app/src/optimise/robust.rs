@@ -91,7 +91,7 @@ impl Robust {
 mod tests {
     use super::*;
 
-    const SCENE: &str = include_str!("../../scenes/scaled-plate-r10.toml");
+    const SCENE: &str = include_str!("../../../scenes/scaled-plate-r10.toml");
 
     /// A normal thickness of 1 % of the design: the 5 % quantile of the thickness itself lies 1.645 % below.
     #[test]

@@ -137,7 +137,7 @@ mod tests {
     /// Also of a kind that this program does not know.
     #[test]
     fn every_part_of_the_hash_that_changed_is_named() {
-        let text = include_str!("../../tests/fixtures/plate-impact.toml");
+        let text = include_str!("../../../tests/fixtures/plate-impact.toml");
         let scene = Scene::parse("plate-impact.toml", text).expect("valid");
         let mut document = solver_document(&scene, Resolution::Paper).expect("a document");
         let [settings, hash] = ["settings_hash", "scene_hash"].map(|key| document[key].clone());

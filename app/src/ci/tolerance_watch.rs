@@ -106,7 +106,7 @@ mod tests {
     use crate::ci::acceptance::{AcceptedReference, ToleranceChange};
     use std::collections::BTreeMap;
 
-    const SCENE: &str = include_str!("../../scenes/scaled-plate-r10.toml");
+    const SCENE: &str = include_str!("../../../scenes/scaled-plate-r10.toml");
 
     fn entry(standing: Standing, tolerances: Vec<ToleranceChange>) -> Acceptance {
         let reference = AcceptedReference {

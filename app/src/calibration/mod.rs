@@ -188,7 +188,7 @@ mod tests {
     use crate::measured::{BANDWIDTH, Channel, low_pass};
     use std::path::PathBuf;
 
-    const SCENE: &str = include_str!("../../scenes/scaled-plate-r10.toml");
+    const SCENE: &str = include_str!("../../../scenes/scaled-plate-r10.toml");
 
     /// A record of the scene with other numbers, as an instrument shows it, with white noise of a share of the largest value.
     fn record(template: &Template, numbers: &[(&Field, f64)], noise: f64, seed: u64) -> Record {
