@@ -63,6 +63,12 @@ fn accepts_keyword(schema: &Map<String, Value>, keyword: &str, rule: &Value, val
                 .filter(|(k, _)| known.and_then(|p| p.get(k.as_str())).is_none())
                 .all(|(_, v)| accepts(rule, v))
         }),
+        // a value that the key itself takes
+        "default" => {
+            let mut form = schema.clone();
+            form.remove("default");
+            accepts(&Value::Object(form), rule)
+        }
         other => panic!("the schema uses `{other}`, which this test does not check"),
     }
 }

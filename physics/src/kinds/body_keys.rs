@@ -96,8 +96,9 @@ const FRICTION: Field = optional(
 const SPIN: Field = optional(
     "spin",
     Kind::Quantity(Dimension::SPIN, Bound::ANY),
-    "Spin about y at t = 0, positive as of a ball that rolls towards +x on a floor; absent = 0",
-);
+    "Spin about y at t = 0, positive as of a ball that rolls towards +x on a floor",
+)
+.otherwise("0");
 const MOMENT_OF_INERTIA: Field = only(
     &["compact"],
     optional(
@@ -166,21 +167,22 @@ pub(super) static OUTER: [Field; 40] = [
         "first frequency",
         stack("first_frequency", Dimension::FREQUENCY, "First frequency of the stack, fixed at its base"),
     ),
+    // that of lead zirconate titanate is 0.29 to 0.34
     only(
         &["stack"],
         optional(
             "poisson_ratio",
             pure(Bound { low: Some((-1.0, false)), high: Some((0.5, false)) }),
-            "Poisson's ratio of the stack; absent = 0.3",
-        ),
+            "Poisson's ratio of the stack",
+        ).otherwise("0.3"),
     ),
     only(
         &["stack"],
         optional(
             "gap",
             Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
-            "Distance of the stack's tip from the plate before it is switched on; absent = 0",
-        ),
+            "Distance of the stack's tip from the plate before it is switched on",
+        ).otherwise("0"),
     ),
     only(
         &["stack"],
@@ -213,8 +215,8 @@ pub(super) static OUTER: [Field; 40] = [
         optional(
             "offset",
             Kind::Quantity(Dimension::LENGTH, Bound::ANY),
-            "Deflection of the bender's tip at contact with the plate, negative = beyond its straight position; absent = 0",
-        ),
+            "Deflection of the bender's tip at contact with the plate, negative = beyond its straight position",
+        ).otherwise("0"),
     ),
     discharge(
         "circuit",
@@ -233,8 +235,8 @@ pub(super) static OUTER: [Field; 40] = [
         optional(
             "discharge_time",
             Kind::Quantity(Dimension::TIME, Bound::NOT_NEGATIVE),
-            "Time constant with which the drive's moment decays after the release; absent = it is gone at once",
-        ),
+            "Time constant with which the drive's moment decays after the release; 0 = it is gone at once",
+        ).otherwise("0"),
     ),
     BODY_MATERIAL,
     only(
@@ -253,16 +255,16 @@ pub(super) static OUTER: [Field; 40] = [
         optional(
             "offset",
             Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
-            "Distance of the point of impact from the axis, along x; absent = 0",
-        ),
+            "Distance of the point of impact from the axis, along x",
+        ).otherwise("0"),
     ),
     only(
         &["sphere", "compact"],
         optional(
             "angle",
             Kind::Quantity(Dimension::ANGLE, TOWARDS),
-            "Angle of the velocity against the normal of what it strikes, positive = towards +x; absent = 0",
-        ),
+            "Angle of the velocity against the normal of what it strikes, positive = towards +x",
+        ).otherwise("0"),
     ),
     only(&["sphere", "compact"], FRICTION),
     only(&["sphere", "compact"], SPIN),
@@ -278,13 +280,13 @@ pub(super) static INNER: [Field; 10] = [
     optional(
         "gap",
         Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
-        "Initial distance to the plate, which changes nothing where there is none; absent = 0",
-    ),
+        "Initial distance to the plate, which changes nothing where there is none",
+    ).otherwise("0"),
     optional(
         "speed",
         Kind::Quantity(Dimension::SPEED, Bound::ANY),
-        "Speed towards the plate, or towards the outer body without one, at its first contact; negative = away from it, absent = 0",
-    ),
+        "Speed towards the plate, or towards the outer body without one, at its first contact; negative = away from it",
+    ).otherwise("0"),
     FRICTION,
     SPIN,
     MOMENT_OF_INERTIA,
@@ -298,6 +300,6 @@ pub(super) static SERIES: [Field; 2] = [
     optional(
         "sphere_spot",
         Kind::Choice(&[choice("same"), choice("fresh")]),
-        "Whether outer and inner body meet the plate each time with the same spot or with one that has not yielded yet; absent = same",
-    ),
+        "Whether outer and inner body meet the plate each time with the same spot or with one that has not yielded yet",
+    ).otherwise("same"),
 ];

@@ -6,17 +6,13 @@ use crate::actuator::magnet::Magnet;
 use crate::actuator::{Bender, Stack, Supply, beam, cantilever};
 use crate::scene::material::material;
 use crate::scene::read::refused;
-use crate::scene::values::{Checked, Node, unknown};
-use crate::scene::{Inner, Outer, Series, Shape, Spot, Turning};
+use crate::scene::values::{Node, unknown};
+use crate::scene::{Inner, Outer, Series, Shape, Turning};
 
 /// How often the impact is repeated, if `root` says so.
 pub(super) fn series(root: &Node) -> Result<Option<Series>> {
     let Some(series) = root.optional_table("series")? else { return Ok(None) };
-    let sphere_spot = match series.0.get("sphere_spot") {
-        Some(Checked::Text(word)) if word == "fresh" => Spot::Fresh,
-        _ => Spot::Same,
-    };
-    Ok(Some(Series { impacts: series.count("impacts")?, sphere_spot }))
+    Ok(Some(Series { impacts: series.count("impacts")?, sphere_spot: series.word("sphere_spot")? }))
 }
 
 fn shape(body: &Node) -> Result<Shape> {
@@ -34,7 +30,7 @@ fn turning(body: &Node, friction: f64) -> Result<Turning> {
     Ok(Turning {
         friction: own_friction.unwrap_or(friction),
         own_friction,
-        spin: body.number_or("spin", 0.0)?,
+        spin: body.number("spin")?,
         moment_of_inertia: body.optional_number("moment_of_inertia")?,
     })
 }
@@ -44,8 +40,8 @@ pub(super) fn inner(inner: &Node, materials: &Node, friction: f64) -> Result<Inn
     Ok(Inner {
         shape: shape(inner)?,
         material: material(materials, inner.text("material")?)?,
-        gap: inner.number_or("gap", 0.0)?,
-        speed: inner.number_or("speed", 0.0)?,
+        gap: inner.number("gap")?,
+        speed: inner.number("speed")?,
         turning: turning(inner, friction)?,
     })
 }
@@ -72,19 +68,19 @@ fn striking(outer: &Node, materials: &Node) -> Result<Outer> {
             shape: shape(outer)?,
             material,
             speed: outer.number("speed")?,
-            offset: outer.number_or("offset", 0.0)?,
-            angle: outer.number_or("angle", 0.0)?,
+            offset: outer.number("offset")?,
+            angle: outer.number("angle")?,
             turning: Turning::default(),
         });
     }
     let mut bender = bender(outer)?;
-    let offset = outer.number_or("offset", 0.0)?;
-    let speed = if outer.0.contains_key("speed") {
+    let offset = outer.number("offset")?;
+    let speed = if outer.has("speed") {
         let speed = outer.number("speed")?;
         bender.strike_at = strike_at(bender, offset, speed)?;
         speed
     } else {
-        let torque = if outer.0.contains_key("torque") {
+        let torque = if outer.has("torque") {
             outer.number("torque")?
         } else {
             cantilever::moment_for_deflection(
@@ -125,7 +121,7 @@ fn pull(outer: &Node) -> Result<Inductance> {
     }
     let rows = outer.tables("curve")?;
     let column = |key: &str| -> Result<Vec<[f64; 2]>> {
-        let given = rows.iter().filter(|row| row.0.contains_key(key));
+        let given = rows.iter().filter(|row| row.has(key));
         given.map(|row| Ok([row.number("way")?, row.number(key)?])).collect()
     };
     let (inductances, forces) = (column("inductance")?, column("force")?);
@@ -160,16 +156,12 @@ fn pull(outer: &Node) -> Result<Inductance> {
     Ok(Inductance::through(&inductances))
 }
 
-/// Poisson's ratio of a stack that names none: that of lead zirconate titanate is 0.29 to 0.34.
-const STACK_POISSON_RATIO: f64 = 0.3;
-
 fn stack(outer: &Node) -> Result<Stack> {
     let drive = outer.optional_table("drive")?;
     let supply = |drive: Node| -> Result<Supply> {
-        let buffer = drive.0.contains_key("buffer_capacitance");
         Ok(Supply {
             resistance: drive.number("resistance")?,
-            buffer_capacitance: buffer.then(|| drive.number("buffer_capacitance")).transpose()?,
+            buffer_capacitance: drive.optional_number("buffer_capacitance")?,
         })
     };
     let mut stack = Stack {
@@ -180,12 +172,12 @@ fn stack(outer: &Node) -> Result<Stack> {
         voltage: outer.number("voltage")?,
         capacitance: outer.number("capacitance")?,
         density: f64::NAN,
-        poisson_ratio: outer.number_or("poisson_ratio", STACK_POISSON_RATIO)?,
+        poisson_ratio: outer.number("poisson_ratio")?,
         tip_radius: outer.number("tip_radius")?,
-        gap: outer.number_or("gap", 0.0)?,
+        gap: outer.number("gap")?,
         drive: drive.map(supply).transpose()?,
     };
-    stack.density = if outer.0.contains_key("density") {
+    stack.density = if outer.has("density") {
         outer.number("density")?
     } else {
         stack.density_for(outer.number("first_frequency")?)
@@ -258,7 +250,7 @@ fn strike_at(bender: Bender, offset: f64, speed: f64) -> Result<f64> {
 
 fn bender(outer: &Node) -> Result<Bender> {
     let (length, tip_mass) = (outer.number("length")?, outer.number("tip_mass")?);
-    let (bending_stiffness, line_mass) = if outer.0.contains_key("bending_stiffness") {
+    let (bending_stiffness, line_mass) = if outer.has("bending_stiffness") {
         (outer.number("bending_stiffness")?, outer.number("line_mass")?)
     } else {
         let (frequency, stiffness) = (outer.number("first_frequency")?, outer.number("tip_stiffness")?);
@@ -279,10 +271,10 @@ fn bender(outer: &Node) -> Result<Bender> {
         line_mass,
         tip_mass,
         tip_radius: outer.number("tip_radius")?,
-        discharge_time: if outer.0.contains_key("capacitance") {
+        discharge_time: if outer.has("capacitance") {
             outer.number("capacitance")? * outer.number("discharge_resistance")?
         } else {
-            outer.number_or("discharge_time", 0.0)?
+            outer.number("discharge_time")?
         },
         strike_at: 0.0,
     })

@@ -105,3 +105,41 @@ fn gated(kind: &dyn Kind) -> Vec<Gated> {
     all.extend(["energy_residual", "momentum_residual"].map(residual));
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::GRAMMAR;
+    use crate::scene::grammar::{Field, Kind};
+    use crate::scene::quantity;
+
+    /// Number of defaults of these keys and those below them, each a value that its key takes.
+    fn valid_defaults(fields: &[Field]) -> usize {
+        let valid = |field: &Field, default: &str| match field.kind {
+            Kind::Quantity(dimension, bound) => {
+                quantity::parse(default, dimension).is_ok_and(|value| bound.holds(value))
+            }
+            Kind::Count(low, high) => default.parse().is_ok_and(|count| (low..=high).contains(&count)),
+            Kind::Choice(choices) => choices.iter().any(|choice| choice.name == default),
+            Kind::Flag => default.parse::<bool>().is_ok(),
+            _ => false,
+        };
+        let of = |field: &Field| {
+            let below = match field.kind {
+                Kind::Table(fields) | Kind::TableOf(fields) | Kind::Tables(fields, _) => {
+                    valid_defaults(fields)
+                }
+                _ => 0,
+            };
+            let Some(default) = field.default else { return below };
+            assert!(!field.required && valid(field, default), "{}: {default}", field.key);
+            below + 1
+        };
+        fields.iter().map(of).sum()
+    }
+
+    /// Nothing but this checks a default before a scene without its key is read.
+    #[test]
+    fn defaults_are_values_of_their_keys() {
+        assert!(valid_defaults(GRAMMAR.keys) > 30);
+    }
+}

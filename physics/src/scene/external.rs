@@ -6,14 +6,12 @@ use super::place::Place;
 use super::quantity::Dimension;
 use super::values::{Checked, Node, Values};
 use crate::{Error, Result};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use toml::de::DeTable;
 
 /// Most words of a command.
 const MOST_WORDS: usize = 64;
-/// Time limit in s of a program whose scene states none.
-const DEFAULT_TIMEOUT: f64 = 60.0;
 /// Names, besides those of reduced models, that mean something else among models.
 const TAKEN: [&str; 3] = ["auto", "external", "reference"];
 
@@ -52,7 +50,7 @@ pub enum ExternalProgram {
 }
 
 /// An interface of a unit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum UnitInterface {
     /// The unit integrates.
@@ -136,13 +134,13 @@ pub(super) static EXTERNAL: [Field; 7] = [
         Kind::Choice(&INTERFACES),
         "Interface of the unit that runs; absent = co-simulation if it has that",
     ),
-    optional("timeout", positive(Dimension::TIME), "Time after which the program is ended; absent = 60 s"),
+    optional("timeout", positive(Dimension::TIME), "Time after which the program is ended").otherwise("60 s"),
 ];
 
 /// The entry that checked values describe.
 pub(super) fn external(node: &Node) -> Result<External> {
-    let program = match node.0.get("fmu") {
-        Some(_) => ExternalProgram::Unit {
+    let program = match node.has("fmu") {
+        true => ExternalProgram::Unit {
             fmu: node.text("fmu")?.to_owned(),
             variables: entries(node, "variables", |value| match value {
                 Checked::Text(name) => Some(name.clone()),
@@ -154,25 +152,17 @@ pub(super) fn external(node: &Node) -> Result<External> {
                 Checked::Text(path) => Some(StartValue::Path(path.clone())),
                 _ => None,
             })?,
-            interface: match node.0.get("interface") {
-                Some(Checked::Text(name)) if name == INTERFACES[1].name => Some(UnitInterface::ModelExchange),
-                Some(_) => Some(UnitInterface::CoSimulation),
-                None => None,
-            },
+            interface: node.optional_word("interface")?,
         },
-        None => ExternalProgram::Command { command: node.texts("command")? },
+        false => ExternalProgram::Command { command: node.texts("command")? },
     };
-    Ok(External {
-        name: node.text("name")?.to_owned(),
-        program,
-        timeout: node.number_or("timeout", DEFAULT_TIMEOUT)?,
-    })
+    Ok(External { name: node.text("name")?.to_owned(), program, timeout: node.number("timeout")? })
 }
 
 /// The entries of the table `key` of `node`; none if there is no such table.
 fn entries<T>(node: &Node, key: &str, of: impl Fn(&Checked) -> Option<T>) -> Result<BTreeMap<String, T>> {
     let none = Values::new();
-    let table = node.optional_table(key)?.map_or(&none, |table| table.0);
+    let table = node.optional_table(key)?.map_or(&none, |table| table.values);
     let entry = |(name, value): (&String, &Checked)| {
         let value = of(value).ok_or_else(|| Error::Internal(format!("`{key}.{name}` was not checked")))?;
         Ok((name.clone(), value))

@@ -1,6 +1,7 @@
 //! What a key of a scene file may be: its kind, its bounds, the ways to say a thing.
 
 use super::quantity::Dimension;
+use std::borrow::Cow;
 
 /// Valid range of a number, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,6 +104,8 @@ pub(crate) struct Field {
     pub(crate) only: &'static [&'static str],
     /// The key is part of one of several ways to say a thing.
     pub(crate) alternative: Option<Alternative>,
+    /// What holds where the key is absent, as a scene file would say it; `None` if the key has no value then, or one that other keys decide.
+    pub(crate) default: Option<&'static str>,
     pub(crate) doc: &'static str,
 }
 
@@ -119,6 +122,19 @@ pub(crate) struct Alternative {
 }
 
 impl Field {
+    /// The optional key with the value that holds where it is absent.
+    pub(crate) const fn otherwise(self, default: &'static str) -> Field {
+        Field { default: Some(default), ..self }
+    }
+
+    /// What the key is, with its default.
+    pub(crate) fn described(&self) -> Cow<'static, str> {
+        match self.default {
+            Some(default) => format!("{}; absent = {default}", self.doc).into(),
+            None => self.doc.into(),
+        }
+    }
+
     /// The alternative the key is part of in a table of this `kind`.
     pub(crate) fn alternative(&self, kind: Option<&str>) -> Option<Alternative> {
         self.alternative.filter(|a| a.kind.is_none() || a.kind == kind)
@@ -136,11 +152,11 @@ impl Field {
 }
 
 pub(crate) const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Field {
-    Field { key, kind, required: true, only: &[], alternative: None, doc }
+    Field { key, kind, required: true, only: &[], alternative: None, default: None, doc }
 }
 
 pub(crate) const fn optional(key: &'static str, kind: Kind, doc: &'static str) -> Field {
-    Field { key, kind, required: false, only: &[], alternative: None, doc }
+    Field { key, kind, required: false, only: &[], alternative: None, default: None, doc }
 }
 
 pub(crate) const fn only(kinds: &'static [&'static str], field: Field) -> Field {

@@ -104,8 +104,9 @@ impl Grammar {
             optional(
                 "friction",
                 pure(Bound::NOT_NEGATIVE),
-                "Coulomb's coefficient of friction of all contacts; model C of a seal seat takes at most 3; absent = 0",
-            ),
+                "Coulomb's coefficient of friction of all contacts; model C of a seal seat takes at most 3",
+            )
+            .otherwise("0"),
             optional("run", Kind::Table(&RUN), "Length of the run"),
             optional(
                 "vibration",

@@ -67,7 +67,7 @@ static RELAXATION: [Field; 2] = [
 pub(crate) fn collisions(root: &Node) -> Result<Vec<Collision>> {
     let materials = root.table("materials")?;
     let mut found = Vec::new();
-    for name in materials.0.keys() {
+    for name in materials.values.keys() {
         let keys = materials.table(name)?;
         let fault = match contradiction(&keys) {
             None => unsound_relaxation(&keys, name)?,
@@ -87,7 +87,7 @@ const TOGETHER: &str = "viscoelastic: `relaxation`, or `loss_factor` and `modulu
 
 /// The key of a material that contradicts or lacks another, and what it does.
 fn contradiction(keys: &Node) -> Option<(&'static str, &'static str)> {
-    let has = |key: &str| keys.0.contains_key(key);
+    let has = |key: &str| keys.has(key);
     let viscoelastic = has("relaxation") || has("loss_factor");
     let rules = [
         (

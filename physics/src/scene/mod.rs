@@ -50,7 +50,7 @@ pub use uncertainty::{Correlation, Distribution, Spread, UncertainInput, Uncerta
 pub use crate::material::{Material, RateHardening, Relaxation};
 
 use crate::Error;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Modes of a reduced model when neither the scene nor the caller names a number (the paper's 16).
@@ -106,7 +106,7 @@ pub struct ReducedSettings {
 }
 
 /// Geometry of the reference.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Geometry {
     /// Axisymmetric solid elements.
@@ -148,7 +148,7 @@ impl ReferenceSettings {
 }
 
 /// Spheres that the solid reference takes as rigid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rigid {
     /// The outer one.

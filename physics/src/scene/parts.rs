@@ -2,10 +2,10 @@
 
 use super::Material;
 pub use crate::actuator::{Bender, Stack, Supply};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Support of the plate's rim.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Edge {
     /// Deflection and slope are zero.
@@ -218,7 +218,7 @@ pub struct Series {
 }
 
 /// Where a body is hit in a series of impacts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Spot {
     /// On the same spot each time.

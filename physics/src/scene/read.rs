@@ -63,8 +63,9 @@ impl Grammar {
         let tolerances = checker.tolerances(root, kind.unwrap_or(&self.dialects[0]));
         let uncertainty = checker.uncertainty(root, self.keys, &values);
         if checker.problems.is_empty() {
-            note(material::collisions(&Node(&values))?, root, &mut checker.problems);
-            let own = kind.map_or_else(Vec::new, |kind| kind.language.collisions(&Node(&values)));
+            note(material::collisions(&Node::new(&values, self.keys))?, root, &mut checker.problems);
+            let own =
+                kind.map_or_else(Vec::new, |kind| kind.language.collisions(&Node::new(&values, self.keys)));
             note(own, root, &mut checker.problems);
             let record = with_record(&mut values, source_name).map_err(|message| FileFault {
                 field: "vibration.file",
@@ -85,19 +86,15 @@ impl Grammar {
 
     /// The scene that checked values describe.
     pub(super) fn assemble(&self, values: &Values, settings: Settings) -> Result<Scene> {
-        let root = &Node(values);
+        let root = &Node::new(values, self.keys);
         let materials = root.table("materials")?;
         let name = root.text("kind")?;
         let dialect = self.dialect(name).ok_or_else(|| unknown("kind", name))?;
         let (setup, reference) = dialect.language.read(root, &materials)?;
-        let end_time = root.optional_table("run")?.filter(|r| r.0.contains_key("end_time"));
+        let end_time = root.optional_table("run")?.filter(|r| r.has("end_time"));
         Ok(Scene {
             name: root.text("name")?.to_owned(),
-            description: if root.0.contains_key("description") {
-                root.text("description")?.to_owned()
-            } else {
-                String::new()
-            },
+            description: root.optional_word("description")?.unwrap_or_default(),
             setup,
             run: RunSettings { end_time: end_time.map(|r| r.number("end_time")).transpose()? },
             reduced: reduced(root.optional_table("reduced")?)?,
@@ -216,13 +213,11 @@ fn syntax(name: &str, text: &str, error: &toml::de::Error) -> Error {
 fn reduced(settings: Option<Node>) -> Result<ReducedSettings> {
     let mut reduced = ReducedSettings { model: None, modes: None, frequencies: None };
     let Some(settings) = settings else { return Ok(reduced) };
-    if settings.0.contains_key("model") {
+    if settings.has("model") {
         reduced.model = Some(settings.text("model")?.parse().map_err(Error::Internal)?);
     }
     for (key, value) in [("modes", &mut reduced.modes), ("frequencies", &mut reduced.frequencies)] {
-        if let Some(Checked::Count(count)) = settings.0.get(key) {
-            *value = usize::try_from(*count).ok();
-        }
+        *value = settings.optional_count(key)?.and_then(|count| usize::try_from(count).ok());
     }
     Ok(reduced)
 }

@@ -68,13 +68,22 @@ fn described(mut schema: Value, doc: &str) -> Value {
     schema
 }
 
+/// The form of a key's value, with what the key is and its default.
+fn stated(form: Value, field: &Field) -> Value {
+    let mut schema = described(form, &field.described());
+    if let Some(default) = field.default {
+        schema["default"] = default.parse().unwrap_or_else(|_| json!(default));
+    }
+    schema
+}
+
 /// A table that has these keys and no other; keys of one `kind` are refused under another.
 fn table(fields: &[Field]) -> Value {
     // A key that stands in the table once per kind gets its form with the kind.
     let several = |f: &Field| fields.iter().filter(|other| other.key == f.key).count() > 1;
     let form = |f: &Field| if several(f) { json!({}) } else { value(&f.kind) };
     let properties: Map<String, Value> =
-        fields.iter().map(|f| (f.key.to_owned(), described(form(f), f.doc))).collect();
+        fields.iter().map(|f| (f.key.to_owned(), stated(form(f), f))).collect();
     let required: Vec<&str> =
         fields.iter().filter(|f| f.is_needed(None) && f.alternative.is_none()).map(|f| f.key).collect();
     let mut schema = json!({
@@ -89,7 +98,7 @@ fn table(fields: &[Field]) -> Value {
             .map(|f| (f.key.to_owned(), json!(false)))
             .collect();
         let own = fields.iter().filter(|f| several(f) && f.belongs_to(Some(kind)));
-        particular.extend(own.map(|f| (f.key.to_owned(), described(value(&f.kind), f.doc))));
+        particular.extend(own.map(|f| (f.key.to_owned(), stated(value(&f.kind), f))));
         let mut then = json!({ "required": needed, "properties": particular });
         let ways = alternatives(fields, Some(kind));
         if !ways.is_empty() {

@@ -97,7 +97,7 @@ impl Template {
             Some(collision) => Err(Rejected(collision.message)),
             None => Ok(()),
         };
-        refused(material::collisions(&Node(&values)).map_err(fault)?)?;
+        refused(material::collisions(&Node::new(&values, self.grammar.keys)).map_err(fault)?)?;
         let scene = self.grammar.assemble(&values, self.settings.clone()).map_err(fault)?;
         refused(scene.setup.bodies().collisions())?;
         Ok(scene)

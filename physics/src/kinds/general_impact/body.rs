@@ -49,7 +49,7 @@ impl BodyMaterials {
             return Ok(Self::Material(material(materials, body.text("material")?)?));
         };
         let of = |group: &String| Ok((group.clone(), material(materials, groups.text(group)?)?));
-        groups.0.keys().map(of).collect::<Result<_>>().map(Self::Materials)
+        groups.values.keys().map(of).collect::<Result<_>>().map(Self::Materials)
     }
 
     /// Each material once, whatever its names, ordered by the names of the groups.
@@ -132,12 +132,8 @@ pub struct Disc {
 impl Body {
     /// The body that the checked table `body` describes, struck at the places `at`.
     pub(super) fn read(body: &Node, materials: &Node, at: [Option<BodyPlace>; 2]) -> Result<Self> {
-        let unit = match body.0.get("unit") {
-            Some(Checked::Text(unit)) => {
-                Some(UNITS.iter().find(|(name, _)| name == unit).map_or(1.0, |u| u.1))
-            }
-            _ => None,
-        };
+        let unit = body.has("unit").then(|| body.text("unit")).transpose()?;
+        let unit = unit.map(|unit| UNITS.iter().find(|(name, _)| *name == unit).map_or(1.0, |u| u.1));
         let fixed =
             body.tables("fixed")?.iter().map(|entry| place(entry, PLACE)).collect::<Result<Vec<_>>>()?;
         Ok(Self {
@@ -147,7 +143,7 @@ impl Body {
             materials: BodyMaterials::read(body, materials)?,
             fixed: fixed.into_iter().flatten().collect(),
             element_size: body.optional_number("element_size")?,
-            damping_ratio: body.number_or("damping_ratio", 0.0)?,
+            damping_ratio: body.number("damping_ratio")?,
             at,
             disc: None,
         })
@@ -251,7 +247,7 @@ pub(super) fn mesh(request: &MeshRequest) -> Result<PathBuf> {
 
 /// The place under `key`, if it is there.
 pub(super) fn place(node: &Node, key: &str) -> Result<Option<BodyPlace>> {
-    Ok(match node.0.get(key) {
+    Ok(match node.values.get(key) {
         Some(Checked::Text(name)) => Some(BodyPlace::Name(name.clone())),
         Some(Checked::Numbers(at)) => {
             let at =

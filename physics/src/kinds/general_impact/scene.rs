@@ -203,7 +203,8 @@ impl Scene {
 
 static WALL: [Field; 2] = [
     optional("material", Kind::Material, "Material of the half-space, a name under [materials]"),
-    optional("rigid", Kind::Flag, "`true` instead of a material: the wall does not deform"),
+    optional("rigid", Kind::Flag, "`true` instead of a material: the wall does not deform")
+        .otherwise("false"),
 ];
 
 /// Most places that hold a body, and most frequencies.
@@ -248,8 +249,9 @@ static BODY: [Field; 7] = [
     optional(
         "damping_ratio",
         pure(Bound { low: Some((0.0, true)), high: Some((1.0, false)) }),
-        "Modal damping ratio, the same for every mode; absent = 0",
-    ),
+        "Modal damping ratio, the same for every mode",
+    )
+    .otherwise("0"),
 ];
 
 /// Where a body strikes.
@@ -268,14 +270,13 @@ static REDUCED: [Field; 2] = [
     ),
 ];
 
-/// Number of elements across the contact radius if a scene names none: with it bands at `coarse` are about 1 %.
-const DEFAULT_ELEMENTS: f64 = 4.0;
-
+// with four elements bands at `coarse` are about 1 %
 static REFERENCE: [Field; 1] = [optional(
     "elements_per_contact_radius",
     pure(CONTACT_ELEMENTS),
-    "Elements across the contact radius at `paper` resolution; absent = 4",
-)];
+    "Elements across the contact radius at `paper` resolution",
+)
+.otherwise("4")];
 
 impl Language for super::Kind {
     fn keys(&self) -> Vec<Field> {
@@ -334,8 +335,7 @@ impl Language for super::Kind {
         let [wall, body, plate] = ["wall", "body", "plate"].map(|key| root.optional_table(key));
         let struck = match (wall?, body?) {
             (Some(wall), _) => {
-                let material =
-                    wall.0.contains_key("material").then(|| material(materials, wall.text("material")?));
+                let material = wall.has("material").then(|| material(materials, wall.text("material")?));
                 Some(Struck::Wall(Wall { material: material.transpose()? }))
             }
             (None, Some(body)) => {
@@ -347,14 +347,12 @@ impl Language for super::Kind {
                 plate?.map(|plate| read_plate(&plate, materials).map(Struck::Plate)).transpose()?
             }
         };
-        let friction = root.number_or("friction", 0.0)?;
+        let friction = root.number("friction")?;
         let inner = inner_table.map(|inner| body_reading::inner(&inner, materials, friction)).transpose()?;
         let outer = body_reading::outer(&outer_table, materials, friction)?;
         let series = body_reading::series(root)?;
         let setup = GeneralImpact { outer, struck, inner, series }.stating_friction()?;
-        let settings = root.optional_table("reference")?;
-        let elements = settings
-            .map_or(Ok(DEFAULT_ELEMENTS), |s| s.number_or("elements_per_contact_radius", DEFAULT_ELEMENTS))?;
+        let elements = root.table_or_defaults("reference")?.number("elements_per_contact_radius")?;
         let reference = ReferenceSettings {
             elements_per_contact_radius: Some(elements),
             ..ReferenceSettings::of(Geometry::Solid)

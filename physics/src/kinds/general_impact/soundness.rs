@@ -6,7 +6,7 @@ use crate::kinds::rubbing::moves_along;
 use crate::scene::Bodies;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
-use crate::scene::values::{Checked, Node};
+use crate::scene::values::Node;
 
 /// Sizes of what was measured with these methods, in m.
 const LENGTH: [f64; 2] = [1e-6, 1.0];
@@ -15,14 +15,14 @@ const MOUNTED: [&str; 2] = ["bender", "stack"];
 
 /// Tables and keys of a scene that exclude or need each other.
 pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
-    let has = |key: &str| root.0.contains_key(key);
+    let has = |key: &str| root.has(key);
     let table = |key: &str| root.optional_table(key).ok().flatten();
     let (wall, outer, run) = (table("wall"), table("outer"), table("run"));
-    let is_rigid = wall.as_ref().is_some_and(|wall| matches!(wall.0.get("rigid"), Some(Checked::Flag(true))));
-    let has_material = wall.as_ref().is_some_and(|wall| wall.0.contains_key("material"));
+    let is_rigid = wall.as_ref().is_some_and(|wall| wall.flag("rigid").is_ok_and(|rigid| rigid));
+    let has_material = wall.as_ref().is_some_and(|wall| wall.has("material"));
     let is_mounted = outer.is_some_and(|outer| outer.text("kind").is_ok_and(|kind| MOUNTED.contains(&kind)));
-    let place = |name: &str| table(name).is_some_and(|table| table.0.contains_key("at"));
-    let ends = run.is_some_and(|run| run.0.contains_key("end_time"));
+    let place = |name: &str| table(name).is_some_and(|table| table.has("at"));
+    let ends = run.is_some_and(|run| run.has("end_time"));
     broken(vec![
         Rule {
             fields: vec!["wall", "body"],

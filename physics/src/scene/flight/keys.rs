@@ -20,8 +20,8 @@ static SPRING: [Field; 5] = [
     optional(
         "stiffness",
         not_negative(Dimension::STIFFNESS),
-        "Decrease of the force per displacement of the sphere; absent = 0",
-    ),
+        "Decrease of the force per displacement of the sphere",
+    ).otherwise("0"),
     one_way(
         None,
         "where the spring pushes from",
@@ -29,8 +29,8 @@ static SPRING: [Field; 5] = [
         optional(
             "angle",
             Kind::Quantity(Dimension::ANGLE, TURN),
-            "Direction of its push against -z, positive towards +x; absent = 0",
-        ),
+            "Direction of its push against -z, positive towards +x",
+        ).otherwise("0"),
     ),
     one_way(
         None,
@@ -45,18 +45,19 @@ static SPRING: [Field; 5] = [
     optional(
         "friction",
         pure(Bound::NOT_NEGATIVE),
-        "Coulomb's coefficient with which its last turn resists every turn of the sphere; absent = 0, it pushes through a point",
-    ),
+        "Coulomb's coefficient with which its last turn resists every turn of the sphere; 0 = it pushes through a point",
+    ).otherwise("0"),
 ];
 
 const HEIGHT: Field = required("chamber_height", positive(Dimension::LENGTH), "z of the chamber's ceiling");
 const GRAVITY: Field =
-    optional("gravity", not_negative(Dimension::ACCELERATION), "Gravity; absent = 9.80665 m/s^2");
+    optional("gravity", not_negative(Dimension::ACCELERATION), "Gravity").otherwise("9.80665 m/s^2");
 const GRAVITY_ANGLE: Field = optional(
     "gravity_angle",
     Kind::Quantity(Dimension::ANGLE, TURN),
-    "Direction of gravity against -z, positive towards +x; absent = 0",
-);
+    "Direction of gravity against -z, positive towards +x",
+)
+.otherwise("0");
 const SPRING_KEY: Field = optional(
     "spring",
     Kind::Table(&SPRING),
@@ -72,23 +73,21 @@ const FLUID_DENSITY: Field = one_way(
 );
 const DRAG_COEFFICIENT: Field =
     one_way(None, "drag", "drag", optional("drag_coefficient", pure(Bound::NOT_NEGATIVE), "c_W of eq. (2)"));
-const END_TIME: Field = optional(
-    "end_time",
-    positive(Dimension::TIME),
-    "Longest time of a flight without a result; absent = 1 s",
-);
-const SPEED_DEVIATION: Field = optional(
-    "speed_scatter",
-    pure(SHARE),
-    "Half width of the range of the launch's speed, relative; absent = 1 %",
-);
+const END_TIME: Field =
+    optional("end_time", positive(Dimension::TIME), "Longest time of a flight without a result")
+        .otherwise("1 s");
+const SPEED_DEVIATION: Field =
+    optional("speed_scatter", pure(SHARE), "Half width of the range of the launch's speed, relative")
+        .otherwise("0.01");
 const ANGLE_DEVIATION: Field = optional(
     "angle_scatter",
     not_negative(Dimension::ANGLE),
-    "Half width of the range of the launch's angle; absent = 0.5 deg",
-);
+    "Half width of the range of the launch's angle",
+)
+.otherwise("0.5 deg");
 const RESTITUTION_DEVIATION: Field =
-    optional("restitution_scatter", pure(SHARE), "Half width of the range of the restitution; absent = 0.02");
+    optional("restitution_scatter", pure(SHARE), "Half width of the range of the restitution")
+        .otherwise("0.02");
 
 /// Of a seal seat, whose shape is the chamber's floor.
 pub(crate) static SEAT_FLIGHT: [Field; 12] = [
@@ -140,10 +139,11 @@ pub(in crate::scene) static VIBRATION: [Field; 8] = [
     optional(
         "angle",
         Kind::Quantity(Dimension::ANGLE, TURN),
-        "Direction of the acceleration against z, positive towards +x; absent = -90 deg, away from the other seat",
-    ),
+        "Direction of the acceleration against z, positive towards +x; -90 deg = away from the other seat",
+    )
+    .otherwise("-90 deg"),
     only(&["sine"], required("frequency", positive(Dimension::FREQUENCY), "Frequency of the sine")),
-    only(&["sine"], optional("periods", Kind::Count(1, 1000), "Number of its periods; absent = 10")),
+    only(&["sine"], optional("periods", Kind::Count(1, 1000), "Number of its periods").otherwise("10")),
     only(&["half-sine"], required("duration", positive(Dimension::TIME), "Length of the shock")),
     only(
         &["record"],

@@ -3,33 +3,27 @@
 use super::{Flight, FlightSpring, Vibration};
 use crate::Result;
 use crate::flight::{LaunchDeviation, Vector, Wave};
-use crate::scene::values::{Checked, Node, unknown};
-use std::f64::consts::{FRAC_PI_2, PI};
-
-/// Standard gravity, m/s^2.
-const STANDARD_GRAVITY: f64 = 9.80665;
-/// Periods of a sine unless the scene gives another number.
-const PERIODS: u64 = 10;
+use crate::scene::values::{Node, unknown};
 
 /// The flight, if there is one.
 pub(in crate::scene) fn flight(root: &Node) -> Result<Option<Flight>> {
     let Some(node) = root.optional_table("flight")? else { return Ok(None) };
-    let angle = node.number_or("gravity_angle", 0.0)?;
+    let angle = node.number("gravity_angle")?;
     let density = node.optional_number("fluid_density")?;
     let drag = density.map(|density| Ok([density, node.number("drag_coefficient")?]));
     Ok(Some(Flight {
         travel: node.optional_number("travel")?,
         chamber_height: node.number("chamber_height")?,
-        gravity: node.number_or("gravity", STANDARD_GRAVITY)? * Vector::new(angle.sin(), -angle.cos()),
+        gravity: node.number("gravity")? * Vector::new(angle.sin(), -angle.cos()),
         spring: node.optional_table("spring")?.as_ref().map(spring).transpose()?,
         restitution: node.optional_number("restitution")?,
         friction: node.number("friction")?,
         drag: drag.transpose()?,
-        end_time: node.number_or("end_time", 1.0)?,
+        end_time: node.number("end_time")?,
         deviation: LaunchDeviation {
-            speed: node.number_or("speed_scatter", 0.01)?,
-            angle: node.number_or("angle_scatter", 0.5 * PI / 180.0)?,
-            restitution: node.number_or("restitution_scatter", 0.02)?,
+            speed: node.number("speed_scatter")?,
+            angle: node.number("angle_scatter")?,
+            restitution: node.number("restitution_scatter")?,
         },
     }))
 }
@@ -37,23 +31,19 @@ pub(in crate::scene) fn flight(root: &Node) -> Result<Option<Flight>> {
 fn spring(node: &Node) -> Result<FlightSpring> {
     Ok(FlightSpring {
         force: node.number("force")?,
-        stiffness: node.number_or("stiffness", 0.0)?,
-        angle: node.number_or("angle", 0.0)?,
+        stiffness: node.number("stiffness")?,
+        angle: node.number("angle")?,
         anchor_distance: node.optional_number("anchor_distance")?,
-        friction: node.number_or("friction", 0.0)?,
+        friction: node.number("friction")?,
     })
 }
 
 /// How the valve is shaken, if it is.
 pub(in crate::scene) fn vibration(root: &Node) -> Result<Option<Vibration>> {
     let Some(node) = root.optional_table("vibration")? else { return Ok(None) };
-    let angle = node.number_or("angle", -FRAC_PI_2)?;
-    let periods = match node.0.get("periods") {
-        Some(Checked::Count(periods)) => *periods,
-        _ => PERIODS,
-    };
+    let angle = node.number("angle")?;
     let wave = match node.text("kind")? {
-        "sine" => Wave::Sine { frequency: node.number("frequency")?, periods: periods as f64 },
+        "sine" => Wave::Sine { frequency: node.number("frequency")?, periods: node.count("periods")? as f64 },
         "half-sine" => Wave::HalfSine { duration: node.number("duration")? },
         "record" => Wave::Record { time: node.numbers("time")?, acceleration: node.numbers("acceleration")? },
         other => return Err(unknown("vibration.kind", other)),

@@ -41,7 +41,7 @@ pub(in crate::kinds) static PLATE: [Field; 5] = [
         "Support of the edge",
     ),
     required("material", Kind::Material, "Material of the plate, a name under [materials]"),
-    optional("damping_ratio", pure(Bound::NOT_NEGATIVE), "Modal damping ratio of every mode; 0 = undamped"),
+    optional("damping_ratio", pure(Bound::NOT_NEGATIVE), "Modal damping ratio of every mode").otherwise("0"),
 ];
 
 /// A key of the shear-thinning viscosity law.
@@ -53,18 +53,19 @@ static FLUID: [Field; 10] = [
     required("viscosity", positive(Dimension::VISCOSITY), "Dynamic viscosity"),
     required("density", positive(Dimension::DENSITY), "Density of the fluid"),
     required("minimum_gap", positive(Dimension::LENGTH), "Minimal gap of eq. (4)"),
-    optional("squeeze_film", Kind::Flag, "Whether the squeeze film of eq. (3) acts; absent = true"),
+    optional("squeeze_film", Kind::Flag, "Whether the squeeze film of eq. (3) acts").otherwise("true"),
     optional(
         "added_mass_frequency_ratio",
         pure(FRACTION),
-        "First wet over first dry eigenfrequency; absent = 1, no added mass",
-    ),
+        "First wet over first dry eigenfrequency; 1 = no added mass",
+    )
+    .otherwise("1"),
     optional(
         "plate_damping_ratio",
         pure(Bound::NOT_NEGATIVE),
         "Modal damping ratio of the wet plate; absent = that of the dry plate",
     ),
-    optional("drag_coefficient", pure(Bound::NOT_NEGATIVE), "c_W of eq. (2); absent = 0, no drag"),
+    optional("drag_coefficient", pure(Bound::NOT_NEGATIVE), "c_W of eq. (2); 0 = no drag").otherwise("0"),
     thinning(
         "infinite_shear_viscosity",
         positive(Dimension::VISCOSITY),
@@ -107,8 +108,9 @@ static REFERENCE: [Field; 4] = [
         optional(
             "rigid",
             Kind::Choice(&[choice("none"), choice("outer"), choice("inner"), choice("both")]),
-            "Spheres that are rigid; absent = none",
-        ),
+            "Spheres that are rigid",
+        )
+        .otherwise("none"),
     ),
 ];
 

@@ -97,7 +97,7 @@ impl Language for super::Kind {
 
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)> {
         let setup = read::plate_impact(root, materials)?;
-        let reference = read::reference(root.optional_table("reference")?, setup.outer.is_centred())?;
+        let reference = read::reference(&root.table_or_defaults("reference")?, setup.outer.is_centred())?;
         Ok((setup.into(), reference))
     }
 }

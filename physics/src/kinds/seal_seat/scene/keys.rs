@@ -69,8 +69,9 @@ static SPHERE: [Field; 4] = [
     optional(
         "body",
         Kind::Choice(&[choice("rigid"), choice("elastic")]),
-        "Whether the sphere deforms, in the reference; absent = rigid",
-    ),
+        "Whether the sphere deforms, in the reference",
+    )
+    .otherwise("rigid"),
 ];
 
 /// Largest number of tips of the actuator.
@@ -110,9 +111,7 @@ static REFERENCE: [Field; 2] = [
     optional(
         "elements_per_ring_radius",
         pure(RING_ELEMENTS),
-        "Elements across the radius of the contact ring at `paper` resolution; absent = 10",
-    ),
+        "Elements across the radius of the contact ring at `paper` resolution",
+    )
+    .otherwise("10"),
 ];
-
-/// Default of `reference.elements_per_ring_radius`.
-pub(super) const DEFAULT_RING_ELEMENTS: f64 = 10.0;

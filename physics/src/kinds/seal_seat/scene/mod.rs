@@ -18,7 +18,7 @@ use crate::scene::hash::{canonical, drop_inelastic, sha256_hex};
 use crate::scene::parts::is_zero;
 use crate::scene::values::Node;
 use crate::scene::{Language, ReferenceSettings, Scene, Setup};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 /// A slot across the whole island (along y) that makes a hinge between the two seats.
@@ -62,7 +62,7 @@ pub struct Seat {
 }
 
 /// Whether the sphere deforms.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SphereBody {
     /// It does not.
@@ -192,7 +192,7 @@ impl Language for super::Kind {
     }
 
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)> {
-        let reference = read::reference(root.optional_table("reference")?)?;
+        let reference = read::reference(&root.table_or_defaults("reference")?)?;
         Ok((read::seal_seat(root, materials)?.into(), reference))
     }
 }

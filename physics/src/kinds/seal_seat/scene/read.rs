@@ -1,17 +1,15 @@
 //! From the checked values of a seal-seat scene to its types.
 
-use super::keys::DEFAULT_RING_ELEMENTS;
-use super::{Actuator, Notch, SealSeat, Seat, SeatedSphere, SphereBody};
+use super::{Actuator, Notch, SealSeat, Seat, SeatedSphere};
 use crate::Result;
 use crate::scene::material::material;
-use crate::scene::values::{Checked, Values};
-use crate::scene::values::{Node, element_order};
+use crate::scene::values::Node;
 use crate::scene::{Geometry, ReferenceSettings, Shape};
 
 /// Seat, sphere, actuator and the intended direction.
 pub(super) fn seal_seat(root: &Node, materials: &Node) -> Result<SealSeat> {
     let (seat, sphere, actuator) = (root.table("seat")?, root.table("sphere")?, root.table("actuator")?);
-    let notch = seat.0.contains_key("notch_width").then(|| -> Result<Notch> {
+    let notch = seat.has("notch_width").then(|| -> Result<Notch> {
         Ok(Notch { width: seat.number("notch_width")?, floor: seat.number("notch_floor")? })
     });
     let (radius, steel) = (sphere.number("radius")?, material(materials, sphere.text("material")?)?);
@@ -34,12 +32,9 @@ pub(super) fn seal_seat(root: &Node, materials: &Node) -> Result<SealSeat> {
         },
         sphere: SeatedSphere {
             radius,
-            mass: sphere.number_or("mass", full)?,
+            mass: sphere.optional_number("mass")?.unwrap_or(full),
             material: steel,
-            body: match sphere.0.get("body") {
-                Some(Checked::Text(word)) if word == "elastic" => SphereBody::Elastic,
-                _ => SphereBody::Rigid,
-            },
+            body: sphere.word("body")?,
         },
         actuator: Actuator {
             mass: actuator.number("mass")?,
@@ -47,20 +42,16 @@ pub(super) fn seal_seat(root: &Node, materials: &Node) -> Result<SealSeat> {
             tip_radius: actuator.number("tip_radius")?,
             tip_positions: actuator.numbers("tip_positions")?,
         },
-        friction: root.number_or("friction", 0.0)?,
+        friction: root.number("friction")?,
         intended_angle: root.table("intended")?.number("angle")?,
     })
 }
 
 /// Settings of the reference of a seal seat.
-pub(super) fn reference(settings: Option<Node>) -> Result<ReferenceSettings> {
-    let empty = Values::new();
-    let settings = settings.unwrap_or(Node(&empty));
+pub(super) fn reference(settings: &Node) -> Result<ReferenceSettings> {
     Ok(ReferenceSettings {
-        elements_per_ring_radius: Some(
-            settings.number_or("elements_per_ring_radius", DEFAULT_RING_ELEMENTS)?,
-        ),
-        element_order: element_order(&settings),
+        elements_per_ring_radius: Some(settings.number("elements_per_ring_radius")?),
+        element_order: settings.optional_count("element_order")?,
         ..ReferenceSettings::of(Geometry::Solid)
     })
 }
