@@ -3,9 +3,10 @@
     python validation/solve.py SCENES ROWS [--known TABLE] [--shard 1/4] [--longest SECONDS]
 
 writes `ROWS/<scene>.json` for every scene file in the folder SCENES that has none yet and is not in
-TABLE; so a run that was stopped goes on, and shards on several machines share the work. A scene
-that is refused or not solved gets a row with the reason; one that takes longer than SECONDS gets
-none, and waits for a run that allows more.
+TABLE; so a run that was stopped goes on, and shards on several machines share the work. Each core
+solves a scene of its own: threads do not pay for meshes as small as these. A scene that is refused
+or not solved gets a row with the reason; one that takes longer than SECONDS gets none, and waits
+for a run that allows more.
 """
 
 from __future__ import annotations
@@ -13,13 +14,17 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
+import os
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Thread
 
 import numpy as np
 from models import PROGRAM, reason, results
@@ -65,7 +70,8 @@ def solve(
 ) -> Row:
     """The line of a scene with a fresh reference; or why there is none.
 
-    Raises ``subprocess.TimeoutExpired`` after ``longest`` seconds.
+    Raises ``subprocess.TimeoutExpired`` after ``longest`` seconds, ``InterruptedError`` if a signal
+    ends the run.
     """
     begun = time.monotonic()
     file = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -74,6 +80,8 @@ def solve(
         command: list[str | Path] = [program, "--store", f"{folder}/store", "compare", path]
         command += [*options, "--out", f"{folder}/page"]
         ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=longest)
+    if ran.returncode < 0:
+        raise InterruptedError(f"ended by signal {-ran.returncode}")
     found: Row = {
         "scene": path.stem,
         "stratum": path.stem.rsplit("-", 1)[0],
@@ -99,6 +107,42 @@ def content(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
 
 
+def _row(rows: Path, path: Path) -> Path:
+    return rows / f"{path.stem}.json"
+
+
+def usable_cores() -> Sequence[int | None]:
+    """The processor cores of this process; without names where the system gives none."""
+    if hasattr(os, "sched_getaffinity"):
+        return sorted(os.sched_getaffinity(0))
+    return [None] * (os.cpu_count() or 1)
+
+
+def _work(core: int | None, missing: SimpleQueue[Path], given: argparse.Namespace) -> None:
+    """Solve scenes on one core until none is left, or a signal ends a run."""
+    if core is not None:
+        os.sched_setaffinity(0, {core})  # of this thread and of what it starts
+    while True:
+        try:
+            path = missing.get_nowait()
+        except Empty:
+            return
+        try:
+            found = solve(path, given.program, given.longest)
+        except subprocess.TimeoutExpired:
+            print(f"{path.stem}: over {given.longest:g} s, waits", file=sys.stderr, flush=True)
+            continue
+        except InterruptedError as error:
+            print(f"{path.stem}: {error}", file=sys.stderr, flush=True)
+            return
+        target = _row(given.rows, path)
+        partial = target.with_suffix(".partial")
+        partial.write_text(json.dumps(found))
+        shutil.move(partial, target)
+        outcome = found.get("refused", f"{found.get('dofs')} unknowns")
+        print(f"{path.stem}: {found['seconds']} s, {outcome}", file=sys.stderr, flush=True)
+
+
 def main() -> None:
     """Solve what is missing."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -114,19 +158,20 @@ def main() -> None:
     given.rows.mkdir(parents=True, exist_ok=True)
     # from every stratum early
     paths = sorted(given.scenes.glob("*.toml"), key=lambda path: (path.stem[-3:], path.stem))
+    missing: SimpleQueue[Path] = SimpleQueue()
     for path in paths[number - 1 :: count]:
-        target = given.rows / f"{path.stem}.json"
-        if known.get(path.stem) != content(path) and not target.exists():
-            try:
-                found = solve(path, given.program, given.longest)
-            except subprocess.TimeoutExpired:
-                print(f"{path.stem}: over {given.longest:g} s, waits", file=sys.stderr, flush=True)
-                continue
-            partial = target.with_suffix(".partial")
-            partial.write_text(json.dumps(found))
-            shutil.move(partial, target)
-            outcome = found.get("refused", f"{found.get('dofs')} unknowns")
-            print(f"{path.stem}: {found['seconds']} s, {outcome}", file=sys.stderr, flush=True)
+        if known.get(path.stem) != content(path) and not _row(given.rows, path).exists():
+            missing.put(path)
+    workers = [
+        Thread(target=_work, args=(core, missing, given), daemon=True) for core in usable_cores()
+    ]
+    for worker in workers:
+        worker.start()
+    try:
+        for worker in workers:
+            worker.join()
+    except KeyboardInterrupt:
+        sys.exit("stopped; the next run goes on with what is missing")
 
 
 if __name__ == "__main__":
