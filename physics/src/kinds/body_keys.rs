@@ -174,7 +174,8 @@ pub(super) static OUTER: [Field; 40] = [
             "poisson_ratio",
             pure(Bound { low: Some((-1.0, false)), high: Some((0.5, false)) }),
             "Poisson's ratio of the stack",
-        ).otherwise("0.3"),
+        )
+        .otherwise("0.3"),
     ),
     only(
         &["stack"],
@@ -182,7 +183,8 @@ pub(super) static OUTER: [Field; 40] = [
             "gap",
             Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
             "Distance of the stack's tip from the plate before it is switched on",
-        ).otherwise("0"),
+        )
+        .otherwise("0"),
     ),
     only(
         &["stack"],
@@ -216,7 +218,8 @@ pub(super) static OUTER: [Field; 40] = [
             "offset",
             Kind::Quantity(Dimension::LENGTH, Bound::ANY),
             "Deflection of the bender's tip at contact with the plate, negative = beyond its straight position",
-        ).otherwise("0"),
+        )
+        .otherwise("0"),
     ),
     discharge(
         "circuit",
@@ -236,7 +239,8 @@ pub(super) static OUTER: [Field; 40] = [
             "discharge_time",
             Kind::Quantity(Dimension::TIME, Bound::NOT_NEGATIVE),
             "Time constant with which the drive's moment decays after the release; 0 = it is gone at once",
-        ).otherwise("0"),
+        )
+        .otherwise("0"),
     ),
     BODY_MATERIAL,
     only(
@@ -256,7 +260,8 @@ pub(super) static OUTER: [Field; 40] = [
             "offset",
             Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
             "Distance of the point of impact from the axis, along x",
-        ).otherwise("0"),
+        )
+        .otherwise("0"),
     ),
     only(
         &["sphere", "compact"],
@@ -264,7 +269,8 @@ pub(super) static OUTER: [Field; 40] = [
             "angle",
             Kind::Quantity(Dimension::ANGLE, TOWARDS),
             "Angle of the velocity against the normal of what it strikes, positive = towards +x",
-        ).otherwise("0"),
+        )
+        .otherwise("0"),
     ),
     only(&["sphere", "compact"], FRICTION),
     only(&["sphere", "compact"], SPIN),
@@ -281,12 +287,14 @@ pub(super) static INNER: [Field; 10] = [
         "gap",
         Kind::Quantity(Dimension::LENGTH, Bound::NOT_NEGATIVE),
         "Initial distance to the plate, which changes nothing where there is none",
-    ).otherwise("0"),
+    )
+    .otherwise("0"),
     optional(
         "speed",
         Kind::Quantity(Dimension::SPEED, Bound::ANY),
         "Speed towards the plate, or towards the outer body without one, at its first contact; negative = away from it",
-    ).otherwise("0"),
+    )
+    .otherwise("0"),
     FRICTION,
     SPIN,
     MOMENT_OF_INERTIA,
@@ -301,5 +309,6 @@ pub(super) static SERIES: [Field; 2] = [
         "sphere_spot",
         Kind::Choice(&[choice("same"), choice("fresh")]),
         "Whether outer and inner body meet the plate each time with the same spot or with one that has not yielded yet",
-    ).otherwise("same"),
+    )
+    .otherwise("same"),
 ];

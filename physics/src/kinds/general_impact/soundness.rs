@@ -18,7 +18,7 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
     let has = |key: &str| root.has(key);
     let table = |key: &str| root.optional_table(key).ok().flatten();
     let (wall, outer, run) = (table("wall"), table("outer"), table("run"));
-    let is_rigid = wall.as_ref().is_some_and(|wall| wall.flag("rigid").is_ok_and(|rigid| rigid));
+    let is_rigid = wall.as_ref().is_some_and(|wall| matches!(wall.flag("rigid"), Ok(true)));
     let has_material = wall.as_ref().is_some_and(|wall| wall.has("material"));
     let is_mounted = outer.is_some_and(|outer| outer.text("kind").is_ok_and(|kind| MOUNTED.contains(&kind)));
     let place = |name: &str| table(name).is_some_and(|table| table.has("at"));
