@@ -1,9 +1,10 @@
 """References of the validation base on finer meshes: `--resolution paper`, 1.5 times the elements.
 
-    python validation/finer.py SCENES validation/base.jsonl ROWS [--count 24] [--program PATH]
+    python validation/finer.py SCENES validation/base.jsonl ROWS [--only dry] [--count 24] [--seed 1]
 
-solves the least expensive scenes of the table again, as far as `ROWS/<scene>.json` is not there
-yet, and prints quantiles of the differences over the bands of the table.
+solves scenes of a group that are drawn at random, as far as `ROWS/<scene>.json` is not there yet,
+writes them into `finer.jsonl` next to the table, and prints quantiles of the differences over the
+bands of the table. The program judges its prediction intervals by them.
 
     python validation/finer.py SCENES validation/base.jsonl ROWS --doubtful
 
@@ -16,6 +17,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import random
 import subprocess
 import sys
 import tempfile
@@ -24,7 +26,7 @@ from typing import Any
 
 import numpy as np
 from models import PROGRAM
-from solve import limits
+from solve import each_on_a_core, limits, write_whole
 from table import Row, read, short, write
 
 QUANTILES = (0.5, 0.9, 0.95, 1.0)
@@ -75,36 +77,65 @@ def with_finer(row: Row, after: dict[str, list[float]]) -> Row:
     return row | {"values": values, "resolution": "paper"}
 
 
+def solve_missing(names: list[str], scenes: Path, rows: Path, program: Path) -> dict[str, Row]:
+    """Values on finer meshes of the scenes ``names``, of those that can be solved."""
+
+    def work(path: Path) -> bool:
+        try:
+            write_whole(rows / f"{path.stem}.json", finer(path, program))
+        except subprocess.CalledProcessError as error:
+            print(f"{path.stem}: {error.stderr}", file=sys.stderr, flush=True)
+            return error.returncode > 0  # below: a signal
+        return True
+
+    rows.mkdir(parents=True, exist_ok=True)
+    solved = {name: rows / f"{name}.json" for name in names}
+    each_on_a_core([scenes / f"{n}.toml" for n, row in solved.items() if not row.exists()], work)
+    return {
+        name: json.loads(row.read_text(encoding="utf-8"))
+        for name, row in solved.items()
+        if row.exists()
+    }
+
+
+def line(row: Row, after: dict[str, list[float]]) -> Row:
+    """A line of `finer.jsonl`."""
+    values = {name: [short(value) for value in of] for name, of in after.items()}
+    return {"scene": row["scene"], "hash": row["hash"], "values": values}
+
+
 def main() -> None:
     """Solve what is missing, and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scenes", type=Path)
     parser.add_argument("table", type=Path)
     parser.add_argument("rows", type=Path)
+    parser.add_argument("--only", default="dry", help="group that scenes are drawn from")
     parser.add_argument("--count", type=int, default=24)
+    parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--doubtful", action="store_true", help="improve the table")
     parser.add_argument("--program", type=Path, default=PROGRAM)
     given = parser.parse_args()
-    given.rows.mkdir(parents=True, exist_ok=True)
     table = {row["scene"]: row for row in read(given.table)}
-    solved = (row for row in table.values() if "values" in row)
-    known = sorted(solved, key=lambda row: float(row["seconds"]))
-    chosen = list(filter(is_doubtful, known)) if given.doubtful else known[: given.count]
-    found: list[float] = []
-    for before in chosen:
-        target = given.rows / f"{before['scene']}.json"
-        if not target.exists():
-            try:
-                result = finer(given.scenes / f"{before['scene']}.toml", given.program)
-            except subprocess.CalledProcessError as error:
-                print(f"{before['scene']}: {error.stderr}", file=sys.stderr)
-                continue
-            target.write_text(json.dumps(result), encoding="utf-8")
-        after = json.loads(target.read_text(encoding="utf-8"))
-        found += ratios(before, after)
-        if given.doubtful:
-            table[before["scene"]] = with_finer(before, after)
-            write(given.table, table.values())
+    solved = {name: row for name, row in table.items() if "values" in row}
+    if given.doubtful:
+        chosen = [name for name, row in solved.items() if is_doubtful(row)]
+    else:
+        group = sorted(name for name, row in solved.items() if row["stratum"] == given.only)
+        chosen = random.Random(given.seed).sample(group, min(given.count, len(group)))
+    coarse = [name for name in chosen if "resolution" not in table[name]]
+    after = solve_missing(coarse, given.scenes, given.rows, given.program)
+    found = [ratio for name in after for ratio in ratios(table[name], after[name])]
+    if given.doubtful:
+        table |= {name: with_finer(table[name], after[name]) for name in after}
+        write(given.table, table.values())
+    else:
+        # what was doubtful has the values of the finer meshes already
+        doubtful = [table[name] for name in chosen if name not in coarse]
+        after |= {row["scene"]: {n: of[:2] for n, of in row["values"].items()} for row in doubtful}
+        lines = given.table.with_name("finer.jsonl")
+        known = {row["scene"]: row for row in read(lines)}
+        write(lines, (known | {name: line(table[name], after[name]) for name in after}).values())
     if not found:
         parser.error("no finer mesh decides a value")
     rms = float(np.sqrt(np.mean(np.square(found))))

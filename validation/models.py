@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import subprocess
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -48,8 +49,13 @@ def main() -> None:
     given = parser.parse_args()
 
     def renewed(row: dict[str, Any]) -> dict[str, Any]:
-        path = given.scenes / f"{row['scene']}.toml"
-        return row if "refused" in row else with_models(row, results(path, given.program))
+        if "refused" in row:
+            return row
+        after = with_models(row, results(given.scenes / f"{row['scene']}.toml", given.program))
+        for model in after.get("failed", {}).keys() - row.get("failed", {}).keys():
+            why = after["failed"][model]
+            print(f"{row['scene']}: model {model} ran before: {why}", file=sys.stderr)
+        return after
 
     write(given.table, map(renewed, read(given.table)))
 

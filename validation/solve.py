@@ -12,6 +12,7 @@ for a run that allows more.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import hashlib
 import json
 import os
@@ -21,7 +22,7 @@ import sys
 import tempfile
 import time
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
@@ -118,29 +119,37 @@ def usable_cores() -> Sequence[int | None]:
     return [None] * (os.cpu_count() or 1)
 
 
-def _work(core: int | None, missing: SimpleQueue[Path], given: argparse.Namespace) -> None:
-    """Solve scenes on one core until none is left, or a signal ends a run."""
-    if core is not None:
-        os.sched_setaffinity(0, {core})  # of this thread and of what it starts
-    while True:
-        try:
-            path = missing.get_nowait()
-        except Empty:
-            return
-        try:
-            found = solve(path, given.program, given.longest)
-        except subprocess.TimeoutExpired:
-            print(f"{path.stem}: over {given.longest:g} s, waits", file=sys.stderr, flush=True)
-            continue
-        except InterruptedError as error:
-            print(f"{path.stem}: {error}", file=sys.stderr, flush=True)
-            return
-        target = _row(given.rows, path)
-        partial = target.with_suffix(".partial")
-        partial.write_text(json.dumps(found))
-        shutil.move(partial, target)
-        outcome = found.get("refused", f"{found.get('dofs')} unknowns")
-        print(f"{path.stem}: {found['seconds']} s, {outcome}", file=sys.stderr, flush=True)
+def each_on_a_core(paths: Iterable[Path], work: Callable[[Path], bool]) -> None:
+    """Do ``work`` on every path, on each core one at a time; a core stops where that gives ``False``.
+
+    Exits on Ctrl-C.
+    """
+    missing: SimpleQueue[Path] = SimpleQueue()
+    for path in paths:
+        missing.put(path)
+
+    def on(core: int | None) -> None:
+        if core is not None:
+            os.sched_setaffinity(0, {core})  # of this thread and of what it starts
+        with contextlib.suppress(Empty):
+            while work(missing.get_nowait()):
+                pass
+
+    workers = [Thread(target=on, args=(core,), daemon=True) for core in usable_cores()]
+    for worker in workers:
+        worker.start()
+    try:
+        for worker in workers:
+            worker.join()
+    except KeyboardInterrupt:
+        sys.exit("stopped; the next run goes on with what is missing")
+
+
+def write_whole(target: Path, row: object) -> None:
+    """Write a row at once: a run that is killed leaves none or all of it."""
+    partial = target.with_suffix(".partial")
+    partial.write_text(json.dumps(row), encoding="utf-8")
+    shutil.move(partial, target)
 
 
 def main() -> None:
@@ -158,20 +167,27 @@ def main() -> None:
     given.rows.mkdir(parents=True, exist_ok=True)
     # from every stratum early
     paths = sorted(given.scenes.glob("*.toml"), key=lambda path: (path.stem[-3:], path.stem))
-    missing: SimpleQueue[Path] = SimpleQueue()
-    for path in paths[number - 1 :: count]:
-        if known.get(path.stem) != content(path) and not _row(given.rows, path).exists():
-            missing.put(path)
-    workers = [
-        Thread(target=_work, args=(core, missing, given), daemon=True) for core in usable_cores()
+    missing = [
+        path
+        for path in paths[number - 1 :: count]
+        if known.get(path.stem) != content(path) and not _row(given.rows, path).exists()
     ]
-    for worker in workers:
-        worker.start()
-    try:
-        for worker in workers:
-            worker.join()
-    except KeyboardInterrupt:
-        sys.exit("stopped; the next run goes on with what is missing")
+
+    def work(path: Path) -> bool:
+        try:
+            found = solve(path, given.program, given.longest)
+        except subprocess.TimeoutExpired:
+            print(f"{path.stem}: over {given.longest:g} s, waits", file=sys.stderr, flush=True)
+            return True
+        except InterruptedError as error:
+            print(f"{path.stem}: {error}", file=sys.stderr, flush=True)
+            return False
+        write_whole(_row(given.rows, path), found)
+        outcome = found.get("refused", f"{found.get('dofs')} unknowns")
+        print(f"{path.stem}: {found['seconds']} s, {outcome}", file=sys.stderr, flush=True)
+        return True
+
+    each_on_a_core(missing, work)
 
 
 if __name__ == "__main__":

@@ -41,7 +41,8 @@ def with_models(row: Row, results: Row) -> Row:
     }
     failed = {model: of["refused"] for model, of in results.items() if "refused" in of}
     kept = {name: value for name, value in row.items() if name != "failed"}
-    return kept | numbers | {"values": values} | ({"failed": failed} if failed else {})
+    stated = {"truncation": short(results["C"].get("truncation_error"))}
+    return kept | numbers | stated | {"values": values} | ({"failed": failed} if failed else {})
 
 
 def read(table: Path) -> list[Row]:

@@ -6,6 +6,8 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 const TABLE: &str = include_str!("../../validation/base.jsonl");
+const FINER: &str = include_str!("../../validation/finer.jsonl");
+
 /// A scene of the base that was solved.
 #[derive(Debug, Clone, Deserialize)]
 pub struct SolvedScene {
@@ -23,6 +25,8 @@ pub struct SolvedScene {
     pub numbers: BTreeMap<String, f64>,
     /// Numbers of model C's result, by name, positive.
     pub results: BTreeMap<String, f64>,
+    /// Error of the omitted modes that model C's result states, relative.
+    pub truncation: Option<f64>,
     /// By quantity, SI.
     pub values: BTreeMap<String, SolvedValues>,
 }
@@ -50,6 +54,26 @@ impl SolvedScene {
     pub fn of_model(&self, model: Model, quantity: &str) -> Option<f64> {
         self.values.get(quantity)?.models[model as usize]
     }
+
+    /// With the reference's values on `finer` meshes; without those that have none there.
+    pub fn with_finer(&self, finer: &FinerScene) -> Self {
+        let with = |(name, values): (&String, &SolvedValues)| {
+            let [reference, band] = *finer.values.get(name)?;
+            Some((name.clone(), SolvedValues { reference, band, ..*values }))
+        };
+        Self { values: self.values.iter().filter_map(with).collect(), ..self.clone() }
+    }
+}
+
+/// A scene of the base on meshes with 1.5 times the elements in every direction, drawn at random (`validation/finer.py`).
+#[derive(Debug, Clone, Deserialize)]
+pub struct FinerScene {
+    /// Name of the scene.
+    pub scene: String,
+    /// Hash of its physical content.
+    pub hash: String,
+    /// The reference's value in the limit of fine meshes and the half width of its 95 % band, by quantity, SI.
+    pub values: BTreeMap<String, [Option<f64>; 2]>,
 }
 
 /// A scene of the base that was refused or not solved.
@@ -94,6 +118,13 @@ pub fn solved() -> &'static [SolvedScene] {
     &BASE.solved
 }
 
+/// Scenes of the base that were drawn at random and solved on finer meshes.
+pub fn finer() -> &'static [FinerScene] {
+    static SCENES: LazyLock<Vec<FinerScene>> =
+        LazyLock::new(|| FINER.lines().filter_map(|text| serde_json::from_str(text).ok()).collect());
+    &SCENES
+}
+
 /// The others.
 pub fn refused() -> &'static [RefusedScene] {
     &BASE.refused
@@ -109,5 +140,8 @@ mod tests {
         assert_eq!(solved().len() + refused().len(), TABLE.lines().count());
         assert!(!solved().is_empty());
         assert!(refused().iter().all(|scene| !scene.refused.is_empty()));
+        assert_eq!(finer().len(), FINER.lines().count());
+        let is_known = |finer: &FinerScene| solved().iter().any(|scene| scene.hash == finer.hash);
+        assert!(finer().iter().all(is_known));
     }
 }

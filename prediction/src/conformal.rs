@@ -1,25 +1,38 @@
-//! Prediction intervals by conformal prediction, scaled by the errors of the nearest cases.
+//! Prediction intervals by conformal prediction, scaled by the errors that are to be expected.
 //!
 //! Papadopoulos, Vovk and Gammerman, Regression conformal prediction with nearest neighbours, J. Artificial Intelligence Research
 //! 40 (2011) 815: an error is measured in units of what its neighbours' errors let expect; the quantile of these ratios over all cases,
-//! times the median of a new case's neighbours, holds the new error with the stated probability, whatever the errors' distribution.
+//! times the error expected of a new case, holds the new error with the stated probability, whatever the errors' distribution. Here a case
+//! also states an error itself, which adds to its neighbours'.
 //!
-//! References have errors of their own. As both are independent, their mean squares add up: the standard deviation of the reference's error
-//! is removed from the errors that calibrate, and added where errors against references are judged.
+//! References have errors of their own. As both are independent, their mean squares add up, and so do the squares of half widths at the same
+//! level; exactly if both have a normal distribution. The half width of the reference's error is removed from the errors that calibrate,
+//! and added where errors against references are judged.
+
+use crate::LEVEL;
 
 /// Neighbours that an error is compared with.
 const NEIGHBOURS: usize = 12;
 /// Least expected error, over the median of all errors: some neighbourhoods agree by chance.
 const LEAST: f64 = 0.1;
 
+/// What an error is predicted from.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// Coordinates. Shape (d).
+    pub coordinates: Vec<f64>,
+    /// Error that the case states itself.
+    pub stated: f64,
+}
+
 /// An error seen at a place.
 #[derive(Debug, Clone)]
 pub struct SeenError {
-    /// Coordinates. Shape (d).
-    pub place: Vec<f64>,
+    /// Of the case.
+    pub place: Place,
     /// Magnitude of the error.
     pub error: f64,
-    /// Standard deviation of the error of the reference that it was measured with.
+    /// What holds the error of the reference with the probability [`LEVEL`].
     pub noise: f64,
 }
 
@@ -47,16 +60,16 @@ pub struct ErrorScale<'a> {
 }
 
 impl<'a> ErrorScale<'a> {
-    /// For intervals that hold the share `level` of all errors; `None` of fewer cases than that needs.
-    pub fn new(cases: &'a [SeenError], level: f64) -> Option<Self> {
+    /// For intervals that hold the share [`LEVEL`] of all errors; `None` of fewer cases than that needs.
+    pub fn new(cases: &'a [SeenError]) -> Option<Self> {
         let count = cases.len();
         // the new case counts as one
-        let rank = (level * (count + 1) as f64).ceil() as usize;
+        let rank = (LEVEL * (count + 1) as f64).ceil() as usize;
         if rank > count {
             return None;
         }
         let errors = cases.iter().map(|case| case.error).collect();
-        let spread = (0..cases[0].place.len()).map(|axis| deviation(cases, axis)).collect();
+        let spread = (0..cases[0].place.coordinates.len()).map(|axis| deviation(cases, axis)).collect();
         let mut found =
             Self { cases, spread, least: (LEAST * median(errors)).max(f64::MIN_POSITIVE), quantile: 0.0 };
         let mut ratios: Vec<f64> = (0..count)
@@ -68,30 +81,32 @@ impl<'a> ErrorScale<'a> {
     }
 
     /// Half width of the interval at `place`.
-    pub fn half_width(&self, place: &[f64]) -> f64 {
+    pub fn half_width(&self, place: &Place) -> f64 {
         self.quantile * self.expected(place, None)
     }
 
-    /// Median of the nearest cases' errors, without the case `own`.
-    fn expected(&self, place: &[f64], own: Option<usize>) -> f64 {
+    /// Median of the nearest cases' errors, without the case `own`, and the error stated at `place`.
+    fn expected(&self, place: &Place, own: Option<usize>) -> f64 {
         let others = self.cases.iter().enumerate().filter(|(k, _)| Some(*k) != own);
         let mut near: Vec<(f64, f64)> =
             others.map(|(_, case)| (self.distance(place, &case.place), case.error)).collect();
         near.sort_by(|a, b| a.0.total_cmp(&b.0));
         let errors = near.iter().take(NEIGHBOURS).map(|(_, error)| *error).collect();
-        median(errors).max(self.least)
+        median(errors).max(self.least) + place.stated
     }
 
     /// Square of the distance, coordinates in standard deviations.
-    fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+    fn distance(&self, a: &Place, b: &Place) -> f64 {
+        let (a, b) = (&a.coordinates, &b.coordinates);
         a.iter().zip(b).zip(&self.spread).map(|((a, b), spread)| ((a - b) / spread).powi(2)).sum()
     }
 }
 
 fn deviation(cases: &[SeenError], axis: usize) -> f64 {
     let count = cases.len() as f64;
-    let mean = cases.iter().map(|case| case.place[axis]).sum::<f64>() / count;
-    let square = cases.iter().map(|case| (case.place[axis] - mean).powi(2)).sum::<f64>() / count;
+    let values = || cases.iter().map(|case| case.place.coordinates[axis]);
+    let mean = values().sum::<f64>() / count;
+    let square = values().map(|value| (value - mean).powi(2)).sum::<f64>() / count;
     // all the same: no difference there
     if square > 0.0 { square.sqrt() } else { f64::INFINITY }
 }
@@ -112,12 +127,16 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
+    fn at(coordinates: Vec<f64>) -> Place {
+        Place { coordinates, stated: 0.0 }
+    }
+
     /// Errors whose size grows a hundredfold along the first coordinate, with long tails.
     fn cases(count: usize, seed: u64) -> Vec<SeenError> {
         let mut random = fastrand::Rng::with_seed(seed);
         let mut draw = || {
-            let place = vec![random.f64(), random.f64()];
-            let size = 10.0_f64.powf(2.0 * place[0] - 4.0);
+            let place = at(vec![random.f64(), random.f64()]);
+            let size = 10.0_f64.powf(2.0 * place.coordinates[0] - 4.0);
             let error = size * (-random.f64().ln()).powf(1.3);
             SeenError { place, error, noise: 0.0 }
         };
@@ -130,7 +149,7 @@ mod tests {
         let (mut within, mut all) = (0, 0);
         for seed in 0..40 {
             let known = cases(100, seed);
-            let calibrated = ErrorScale::new(&known, 0.95).unwrap();
+            let calibrated = ErrorScale::new(&known).unwrap();
             for case in cases(200, 1000 + seed) {
                 within += usize::from(case.is_within(calibrated.half_width(&case.place)));
                 all += 1;
@@ -140,7 +159,8 @@ mod tests {
         assert!((0.94..0.965).contains(&share), "{share}");
     }
 
-    /// Errors of normal distribution, measured with as much noise: intervals hold the errors alone, and are narrower than with the noise.
+    /// Errors of normal distribution, measured with as much noise: intervals hold the stated share of the errors alone, and are narrower
+    /// than with the noise.
     #[test]
     fn noise_is_taken_out() {
         let (mut within, mut all, mut narrower) = (0, 0, 0);
@@ -149,33 +169,49 @@ mod tests {
             let mut normal = || (-2.0 * random.f64().ln()).sqrt() * (TAU * random.f64()).cos();
             let mut case = || {
                 let (own, noise) = (normal(), normal());
-                (SeenError { place: vec![0.0], error: (own + noise).abs(), noise: 1.0 }, own.abs())
+                (SeenError { place: at(vec![0.0]), error: (own + noise).abs(), noise: 1.96 }, own.abs())
             };
             let known: Vec<SeenError> = (0..100).map(|_| case().0).collect();
-            let half = ErrorScale::new(&known, 0.95).unwrap().half_width(&[0.0]);
+            let half = ErrorScale::new(&known).unwrap().half_width(&at(vec![0.0]));
             let loud: Vec<SeenError> =
                 known.iter().map(|case| SeenError { noise: 0.0, ..case.clone() }).collect();
-            narrower += usize::from(half < ErrorScale::new(&loud, 0.95).unwrap().half_width(&[0.0]));
+            let with_noise = ErrorScale::new(&loud).unwrap().half_width(&at(vec![0.0]));
+            narrower += usize::from(half < with_noise);
             within += (0..100).filter(|_| case().1 <= half).count();
             all += 100;
         }
         let share = within as f64 / all as f64;
-        assert!((0.95..0.995).contains(&share), "{share}");
+        assert!((0.935..0.97).contains(&share), "{share}");
         assert_eq!(narrower, 100);
     }
 
     #[test]
     fn intervals_are_narrow_where_errors_are_small() {
         let known = cases(200, 7);
-        let calibrated = ErrorScale::new(&known, 0.95).unwrap();
-        let [small, large] = [0.1, 0.9].map(|x| calibrated.half_width(&[x, 0.5]));
+        let calibrated = ErrorScale::new(&known).unwrap();
+        let [small, large] = [0.1, 0.9].map(|x| calibrated.half_width(&at(vec![x, 0.5])));
         assert!(large > 10.0 * small, "{small} {large}");
+    }
+
+    /// Cases that state their errors, which their places do not show.
+    #[test]
+    fn intervals_are_wide_where_a_case_states_an_error() {
+        let mut random = fastrand::Rng::with_seed(3);
+        let mut case = |stated: f64| {
+            let place = Place { coordinates: vec![random.f64()], stated };
+            SeenError { place, error: (0.01 + stated) * random.f64(), noise: 0.0 }
+        };
+        let known: Vec<SeenError> = (0..200).map(|k| case(if k % 10 == 0 { 1.0 } else { 0.0 })).collect();
+        let calibrated = ErrorScale::new(&known).unwrap();
+        let [small, large] =
+            [0.0, 1.0].map(|stated| calibrated.half_width(&Place { stated, ..at(vec![0.5]) }));
+        assert!(large > 20.0 * small && large > 0.9, "{small} {large}");
     }
 
     /// 19 cases are the fewest that show what one in twenty exceeds.
     #[test]
     fn too_few_cases_give_no_interval() {
-        assert!(ErrorScale::new(&cases(18, 1), 0.95).is_none());
-        assert!(ErrorScale::new(&cases(19, 1), 0.95).is_some());
+        assert!(ErrorScale::new(&cases(18, 1)).is_none());
+        assert!(ErrorScale::new(&cases(19, 1)).is_some());
     }
 }

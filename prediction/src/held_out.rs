@@ -1,7 +1,7 @@
 //! How true the intervals are: scenes of the base are predicted by others of their group. In a large group one half predicts the other
 //! one, both ways; in a small one each scene is predicted by all others.
 
-use super::base::{SolvedScene, solved};
+use super::base::{SolvedScene, finer, solved};
 use super::conformal::{ErrorScale, SeenError};
 use super::{FEWEST, LEVEL, error, errors};
 use impactcheck_physics::scene::Model;
@@ -37,6 +37,18 @@ pub struct HeldOut {
     pub quantities: BTreeMap<&'static str, JudgedValue>,
 }
 
+impl HeldOut {
+    /// The same intervals, judged by the reference on finer meshes; `None` of a scene that was not drawn for it.
+    pub fn on_finer_meshes(&self) -> Option<Self> {
+        let finer = self.scene.with_finer(finer().iter().find(|finer| finer.hash == self.scene.hash)?);
+        let judged = |(name, known): (&&'static str, &JudgedValue)| {
+            let (signed, seen) = error(&finer, Model::C, name)?;
+            Some((*name, JudgedValue { signed, seen, ..*known }))
+        };
+        Some(Self { scene: self.scene, quantities: self.quantities.iter().filter_map(judged).collect() })
+    }
+}
+
 /// The groups of the base with solved scenes.
 pub fn strata() -> BTreeSet<&'static str> {
     solved().iter().map(|scene| scene.stratum.as_str()).collect()
@@ -68,7 +80,7 @@ fn predicted_by_others(all: &[&'static SolvedScene], parts: usize, part: usize) 
     let mut found: Vec<HeldOut> = own.map(|scene| HeldOut { scene, quantities: BTreeMap::new() }).collect();
     for quantity in quantities(all) {
         let known = errors(&others, quantity);
-        let Some(calibrated) = ErrorScale::new(&known, LEVEL) else { continue };
+        let Some(calibrated) = ErrorScale::new(&known) else { continue };
         for held in &mut found {
             let Some((signed, seen)) = error(held.scene, Model::C, quantity) else { continue };
             let half_width = calibrated.half_width(&seen.place);

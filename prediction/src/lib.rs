@@ -12,8 +12,8 @@ pub mod held_out;
 mod kinds;
 mod similarity;
 
-pub use base::{RefusedScene, SolvedScene, refused, solved};
-pub use conformal::{ErrorScale, SeenError};
+pub use base::{FinerScene, RefusedScene, SolvedScene, finer, refused, solved};
+pub use conformal::{ErrorScale, Place, SeenError};
 pub use kinds::stokes_number;
 pub use similarity::{MEASURES, Similarity};
 
@@ -37,9 +37,9 @@ const ANGLE: &str = "_angle";
 const RESTITUTION: &str = "_restitution";
 /// Widest band over the scale with which a reference determines a quantity.
 const DETERMINED: f64 = 0.05;
-/// Standard deviation of the errors of the base's references over their bands, which are wider than they need to be; against meshes with
-/// 1.5 times the elements in every direction (`validation/finer.py`).
-const NOISE: f64 = 0.25;
+/// What holds an error of the base's references with the probability [`LEVEL`], over their bands, which are wider than they need to be;
+/// against meshes with 1.5 times the elements in every direction (`validation/finer.py`).
+const NOISE: f64 = 0.5;
 
 /// What a reference would find of a quantity on infinitely fine meshes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -154,10 +154,10 @@ impl Similar {
         for (name, value) in &own.results {
             self.require_within(name, *value, |other| other.results.get(*name).copied())?;
         }
-        let place = coordinates(own.results.values(), own.numbers.values());
+        let place = place(&own.results, &own.numbers, continuum.truncation_error);
         let half_width = |quantity: &Quantity| {
             let errors = errors(&self.scenes, quantity.name);
-            let error = ErrorScale::new(&errors, LEVEL).filter(|_| errors.len() >= FEWEST)?;
+            let error = ErrorScale::new(&errors).filter(|_| errors.len() >= FEWEST)?;
             Some((quantity.name, (error.half_width(&place), errors.len())))
         };
         let found: BTreeMap<_, _> = continuum.quantities.iter().filter_map(half_width).collect();
@@ -196,19 +196,24 @@ pub fn error(scene: &SolvedScene, model: Model, quantity: &str) -> Option<(f64, 
     let scale = scale(quantity, |name| scene.of_model(Model::C, name), scene.speed).filter(|s| *s > 0.0)?;
     let band = values.band? / scale;
     let signed = (scene.of_model(model, quantity)? - values.reference?) / scale;
-    let place = coordinates(scene.results.values(), scene.numbers.values());
-    let is_known = !place.is_empty() && scene.unsound.is_empty();
+    let place = place(&scene.results, &scene.numbers, scene.truncation);
+    let is_known = !place.coordinates.is_empty() && scene.unsound.is_empty();
     let seen = SeenError { place, error: signed.abs(), noise: NOISE * band };
     (is_known && band <= DETERMINED).then_some((signed, seen))
 }
 
-/// Where a scene lies, for neighbours: the logarithms of the numbers of its result, or its own numbers if the result has none.
-fn coordinates<'a>(
-    results: impl Iterator<Item = &'a f64>,
-    numbers: impl Iterator<Item = &'a f64>,
-) -> Vec<f64> {
-    let place: Vec<f64> = results.map(|value| value.ln()).collect();
-    if place.is_empty() { numbers.copied().collect() } else { place }
+/// Where a scene lies: the logarithms of the numbers of its result, or its own numbers if the result has none; with the error of the omitted
+/// modes that the result states.
+fn place<Name>(
+    results: &BTreeMap<Name, f64>,
+    numbers: &BTreeMap<Name, f64>,
+    truncation: Option<f64>,
+) -> Place {
+    let mut coordinates: Vec<f64> = results.values().map(|value| value.ln()).collect();
+    if coordinates.is_empty() {
+        coordinates = numbers.values().copied().collect();
+    }
+    Place { coordinates, stated: truncation.unwrap_or(0.0) }
 }
 
 /// What the error of a quantity is relative to, by the values of a result and the `speed` of its impact in m/s: the quantity itself;

@@ -32,7 +32,10 @@ fn intervals_from_some_scenes_of_the_base_hold_the_others() {
         }
     }
     assert!(judged >= 8);
-    assert!(study.claims[0].ours.unwrap() < 0.07, "{:?}", study.claims[0]);
+    // by the base, and by finer meshes of some of its scenes
+    for claim in &study.claims[..2] {
+        assert!(claim.ours.unwrap() < 0.07, "{claim:?}");
+    }
     let svg = study::prediction::figure(&study);
     assert!(svg.matches("<circle").count() > 500 && !svg.contains("NaN"));
 }

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Tolerances of the study.
 pub const TOLERANCES: [f64; 3] = [0.01, 0.03, 0.1];
 const COLUMNS: &str = "scene, group, tolerance, model, predicted_error, true_error, met, within";
-/// Largest standard deviation of the references' errors over the tolerance that they can decide about.
+/// Largest error of a reference, with 95 %, over the tolerance that it can decide about.
 const DECISIVE: f64 = 0.5;
 
 /// The study.
