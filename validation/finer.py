@@ -1,6 +1,6 @@
 """References of the validation base on finer meshes: `--resolution paper`, 1.5 times the elements.
 
-    python validation/finer.py SCENES validation/base.jsonl ROWS [--only dry] [--count 24] [--seed 1]
+    python validation/finer.py SCENES validation/base.jsonl ROWS [--only dry] [--count 24]
 
 solves scenes of a group that are drawn at random, as far as `ROWS/<scene>.json` is not there yet,
 writes them into `finer.jsonl` next to the table, and prints quantiles of the differences over the

@@ -120,9 +120,9 @@ def usable_cores() -> Sequence[int | None]:
 
 
 def each_on_a_core(paths: Iterable[Path], work: Callable[[Path], bool]) -> None:
-    """Do ``work`` on every path, on each core one at a time; a core stops where that gives ``False``.
+    """Do ``work`` on every path, one at a time on each core.
 
-    Exits on Ctrl-C.
+    A core stops where ``work`` gives ``False``. Exits on Ctrl-C.
     """
     missing: SimpleQueue[Path] = SimpleQueue()
     for path in paths:
