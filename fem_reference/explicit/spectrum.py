@@ -17,6 +17,10 @@ LANCZOS_STEPS = 400
 LANCZOS_TOLERANCE = 1e-5
 CG_STEPS = 20000
 CG_TOLERANCE = 1e-7
+PLAIN_STEPS, STEPS = 60, 120
+"""Most steps of inverse iteration from the last motion alone, and in all."""
+PARALLEL = 1e-8
+"""Distance of unit vectors below which they are the same but for rounding."""
 
 Precondition = Callable[[Floats], Floats]
 """A symmetric approximation of K^-1."""
@@ -179,6 +183,9 @@ def first_frequency(
 ) -> float:
     """Lowest eigenfrequency of a body, Hz, by inverse iteration from the motion along ``axis``.
 
+    Where the two lowest are close to each other, plain iteration is slow or stops at the second
+    one; then each step begins with the best combination of the last three motions.
+
     A body that is free along ``axis`` keeps that motion out of the iteration. ``start`` (3 n,) is
     another motion to begin with, where the lowest mode may not contain that along ``axis``;
     ``floating`` the rigid motions, where there may be others than a force along it causes;
@@ -194,9 +201,12 @@ def first_frequency(
         x = orthogonal(rigid * np.repeat((place[:, :2] ** 2).sum(axis=1), 3))
     if start is not None:
         x = orthogonal(start * free)
-    value = 0.0
-    for _ in range(60):
-        x /= math.sqrt(loop.dot(x, mass * x))
+    value, is_plain = 0.0, True
+    earlier: list[Floats] = []
+    for step in range(1, STEPS + 1):
+        following = x if is_plain else _lowest_within(loop, [x, *earlier], mass, free)
+        earlier = [x, *earlier[:1]]
+        x = following / math.sqrt(loop.dot(following, mass * following))
         load = mass * x * free
         x = orthogonal(
             conjugate_gradients(
@@ -209,11 +219,39 @@ def first_frequency(
                 precondition=precondition,
             )
         )
-        squared = loop.dot(x, loop.product(x) * free) / loop.dot(x, mass * x * free)
+        squared = _rayleigh_quotient(loop, x, mass, free)
         if abs(squared - value) <= tolerance * squared:
-            return math.sqrt(squared) / (2.0 * math.pi)
-        value = squared
+            lowest = _lowest_within(loop, [x, *earlier], mass, free)
+            least = _rayleigh_quotient(loop, lowest, mass, free)
+            if not is_plain or least >= (1.0 - 10.0 * tolerance) * squared:
+                return math.sqrt(squared) / (2.0 * math.pi)
+            is_plain = False
+        value, is_plain = squared, is_plain and step < PLAIN_STEPS
     raise SolverError("the first eigenfrequency was not found")
+
+
+def _rayleigh_quotient(loop: Loop, x: Floats, mass: Floats, free: Floats) -> float:
+    """Square of the angular frequency of a motion, 1/s^2."""
+    return float(loop.dot(x, loop.product(x) * free) / loop.dot(x, mass * x * free))
+
+
+def _lowest_within(loop: Loop, motions: list[Floats], mass: Floats, free: Floats) -> Floats:
+    """The motion of least frequency that motions combine to (Rayleigh and Ritz)."""
+
+    def length(motion: Floats) -> float:
+        return math.sqrt(loop.dot(motion, mass * motion))
+
+    basis: list[Floats] = []
+    for motion in motions:
+        rest = motion / length(motion)
+        for known in (*basis, *basis):  # twice: they are nearly parallel
+            rest = rest - loop.dot(known, mass * rest) * known
+        if length(rest) > PARALLEL:
+            basis.append(rest / length(rest))
+    images = [loop.product(motion) * free for motion in basis]
+    matrix = np.array([[loop.dot(a, image) for image in images] for a in basis])
+    weights = np.linalg.eigh(0.5 * (matrix + matrix.T))[1][:, 0]
+    return np.asarray(sum(weight * motion for weight, motion in zip(weights, basis, strict=True)))
 
 
 def patch_flexibility(loop: Loop, body: int, nodes: Ints, weights: Floats) -> float:
