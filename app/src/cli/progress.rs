@@ -3,9 +3,10 @@
 use super::Context;
 use crate::reference::Progress;
 use crate::sweep;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::fmt::Write;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::mpsc;
+use std::sync::{Once, mpsc};
 use std::time::Duration;
 
 /// How long a run goes on without a word.
@@ -32,7 +33,12 @@ pub fn watched<T>(context: &Context, what: &str, work: impl FnOnce() -> T) -> T 
 }
 
 /// Bar over the phases of a reference solution.
-pub struct Bar(ProgressBar, Context);
+pub struct Bar {
+    bar: ProgressBar,
+    context: Context,
+    /// The first share that was shown.
+    begun: Once,
+}
 
 /// The phase of a solver's message that is to be read and kept, whatever the run does.
 const NOTE: &str = "note";
@@ -44,42 +50,59 @@ impl Bar {
         if context.quiet {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        if let Ok(style) =
-            ProgressStyle::with_template("{prefix} {bar:30} {percent:>3} % {msg} [{elapsed}, {eta} left]")
-        {
-            bar.set_style(style);
-        }
         bar.set_prefix(title.to_owned());
-        Self(bar, context.clone())
+        Self { bar, context: context.clone(), begun: Once::new() }
+    }
+
+    /// Goes to a `share` of all, 0 to 1. The time left is that at the mean rate since the first one, with which a resumed run began:
+    /// the rate of the last seconds says little where meshing, stepping and waiting for a contact to end take turns.
+    fn go_to(&self, share: f64) {
+        let share = share.clamp(0.0, 1.0);
+        self.begun.call_once(|| {
+            let left = move |state: &ProgressState, out: &mut dyn Write| {
+                let done = f64::from(state.fraction());
+                let ratio = (1.0 - done) / (done - share);
+                let _ = match ratio.is_finite() && ratio >= 0.0 {
+                    true => write!(out, "{:#}", HumanDuration(state.elapsed().mul_f64(ratio))),
+                    false => write!(out, "?"),
+                };
+            };
+            let template = "{prefix} {bar:30} {percent:>3} % {msg} [{elapsed}, {left} left]";
+            if let Ok(style) = ProgressStyle::with_template(template) {
+                self.bar.set_style(style.with_key("left", left));
+            }
+            self.bar.reset_elapsed();
+        });
+        self.bar.set_position((1000.0 * share) as u64);
     }
 
     /// Shows how far the solution is; a note stays.
     pub fn show(&self, progress: &Progress) {
         if progress.phase == NOTE {
-            return self.0.suspend(|| self.1.note(&progress.message));
+            return self.bar.suspend(|| self.context.note(&progress.message));
         }
         // of several meshes the bar shows all together, and the time left is that of all
         let share = progress.series.unwrap_or(progress.done);
         let Progress { phase, message, done, .. } = progress;
-        self.0.set_message(match progress.series {
+        self.bar.set_message(match progress.series {
             Some(_) => format!("{message} ({phase}, {:.0} %)", 100.0 * done),
             None => format!("{phase}: {message}"),
         });
-        self.0.set_position((1000.0 * share.clamp(0.0, 1.0)) as u64);
+        self.go_to(share);
     }
 
     /// Shows the part of a set-up that is being done; `done` is the share before it, 0 to 1.
     pub fn part(&self, part: &'static str, done: f64) {
-        self.0.set_message(part);
-        self.0.set_position((1000.0 * done.clamp(0.0, 1.0)) as u64);
+        self.bar.set_message(part);
+        self.go_to(done);
         // the next call may be seconds away
-        self.0.enable_steady_tick(Duration::from_millis(200));
+        self.bar.enable_steady_tick(Duration::from_millis(200));
     }
 }
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 
