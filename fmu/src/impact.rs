@@ -131,7 +131,7 @@ impl LaunchedImpact {
         found.map_or([f64::NAN; 2], |interval| [interval.low, interval.high])
     }
 
-    /// What a reference would find: model C runs for it, as it is by default, unless this is its result.
+    /// What a converged reference would find: model C runs for it, as it is by default, unless this is its result.
     fn prediction(&self, source: &UnitSource, series: &dyn Series) -> &Prediction {
         self.prediction.get_or_init(|| {
             let is_default = source.setup.modes.or(self.scene.reduced.modes).is_none();

@@ -113,10 +113,10 @@ impl Output {
             Output::Warnings => "Number of warnings; the log has them, if it is on".into(),
             Output::Predicted => "Whether 95 % intervals are known".into(),
             Output::Low(name) => format!(
-                "Lower end of the 95 % interval of what a reference would find for {name}; NaN if unknown"
+                "Lower end of the 95 % interval of what a converged reference would find for {name}; NaN if unknown"
             ),
             Output::High(name) => format!(
-                "Upper end of the 95 % interval of what a reference would find for {name}; NaN if unknown"
+                "Upper end of the 95 % interval of what a converged reference would find for {name}; NaN if unknown"
             ),
             Output::Shifts => "Whether the sphere comes to rest in the other seat".into(),
             Output::Landing => "Time at which it is certain in which seat the sphere comes to rest".into(),

@@ -30,7 +30,7 @@ pub enum PageRequest {
         /// Samples of the curves, over equal steps.
         samples: usize,
     },
-    /// Runs a model. The answer: its summary, values and curves, of model C also what a reference would find.
+    /// Runs a model. The answer: its summary, values and curves, of model C also what a converged reference would find.
     Run {
         /// A, B or C.
         model: String,

@@ -1,4 +1,4 @@
-//! How far a reduced model of a scene without a reference can be trusted: intervals that hold what a reference would find.
+//! How far a reduced model of a scene without a reference can be trusted: intervals that hold what a converged reference would find.
 //!
 //! They come from the errors of model C in similar scenes of the validation base. Models A and B are judged by model C of the same
 //! scene: what they differ by is known.
@@ -41,7 +41,7 @@ const DETERMINED: f64 = 0.05;
 /// against meshes with 1.5 times the elements in every direction (`validation/finer.py`).
 const NOISE: f64 = 0.5;
 
-/// What a reference would find of a quantity on infinitely fine meshes.
+/// What a converged reference would find of a quantity on infinitely fine meshes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Interval {
     /// Least value, SI.

@@ -60,7 +60,7 @@ fn curves(history: History) -> Vec<(&'static str, Samples)> {
     std::iter::once(time).chain(curves).collect()
 }
 
-/// Runs a reduced model of a scene, with what a reference would find.
+/// Runs a reduced model of a scene, with what a converged reference would find.
 #[pyfunction]
 fn predicted(
     py: Python,

@@ -1,4 +1,4 @@
-//! What `reduced` prints of what a reference would find.
+//! What `reduced` prints of what a converged reference would find.
 
 use crate::program::{flat, impactcheck, json};
 
@@ -15,7 +15,7 @@ fn the_prediction_does_not_depend_on_the_model_that_runs() {
         assert_eq!(of(options)["prediction"], expected["prediction"], "{options:?}");
     }
     let printed = impactcheck(&["reduced", "scaled-plate-r6.35"]).out;
-    assert!(printed.contains("a reference would find (95 %, from "), "{printed}");
+    assert!(printed.contains("a converged reference would find (95 %, from "), "{printed}");
 }
 
 /// A scene unlike those of the base has no intervals, and the reason where details are wanted.
@@ -25,7 +25,9 @@ fn a_scene_unlike_those_of_the_base_has_a_reason() {
     let found = json(&["reduced", scene, "--model", "A", "--json"]);
     let reason = found["prediction_reason"].as_str().expect("a reason");
     assert!(found["prediction"].is_null() && reason.contains("no repeated impacts"), "{reason}");
-    assert!(!impactcheck(&["reduced", scene, "--model", "A"]).out.contains("a reference would find"));
+    assert!(
+        !impactcheck(&["reduced", scene, "--model", "A"]).out.contains("a converged reference would find")
+    );
     let verbose = impactcheck(&["-v", "reduced", scene, "--model", "A"]).error;
     assert!(flat(&verbose).contains(&flat(reason)), "{verbose}");
 }

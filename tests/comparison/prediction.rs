@@ -81,13 +81,11 @@ fn the_page_of_a_model_shows_what_a_reference_would_find() {
         let outcome = Reduced::new(&scene, Model::C, None).unwrap().run_with_history(1e-7).unwrap();
         model_page(&scene, &outcome, &predict(&scene, &outcome.summary))
     };
-    assert!(page("scaled-plate-r10", "").contains("a reference would find (95 %)"));
+    assert!(page("scaled-plate-r10", "").contains("a converged reference would find (95 %)"));
     let none = page("scaled-plate-r10", "\n[series]\nimpacts = 2\n");
-    assert!(
-        none.contains(
-            "no interval of what a reference would find: the validation base has no repeated impacts"
-        )
-    );
+    assert!(none.contains(
+        "no interval of what a converged reference would find: the validation base has no repeated impacts"
+    ));
 }
 
 /// The scale of a force is the force, of a velocity the impact's speed; negligible parts of an impact have its own.

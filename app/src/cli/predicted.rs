@@ -1,4 +1,4 @@
-//! What a reference would find, with the result of a reduced model.
+//! What a converged reference would find, with the result of a reduced model.
 
 use super::requested_model::{ModelRequest, RequestedModel};
 use super::{Context, kinds};
@@ -25,7 +25,7 @@ pub(super) fn predicted(
     })
 }
 
-/// A summary, and what a reference would find.
+/// A summary, and what a converged reference would find.
 #[derive(Debug, Serialize)]
 pub struct PredictedSummary<'a> {
     #[serde(flatten)]

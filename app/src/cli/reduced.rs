@@ -91,7 +91,7 @@ fn predicted_lines(intervals: &BTreeMap<&'static str, Interval>, summary: &Summa
         if lines.is_empty() {
             let (level, Interval { scenes, stratum, .. }) = (100.0 * interval.level, interval);
             lines.push(format!(
-                "  a reference would find ({level:.0} %, from {scenes} solved scenes of the group `{stratum}`)"
+                "  a converged reference would find ({level:.0} %, from {scenes} solved scenes of the group `{stratum}`)"
             ));
         }
         let [low, high] = format::interval([interval.low, interval.high], unit);

@@ -25,7 +25,7 @@ pub fn body_page(scene: &Scene) -> String {
     page(&format!("{title} · impactcheck"), &[], &body, &html! {})
 }
 
-/// The page of the model of `scene` that has the `outcome`, with what a reference would find.
+/// The page of the model of `scene` that has the `outcome`, with what a converged reference would find.
 pub fn model_page(scene: &Scene, outcome: &Outcome, prediction: &Prediction) -> String {
     let Outcome { summary, history } = outcome;
     let model = format!("model {}", model_name(summary.model.as_deref().unwrap_or("?"), summary.modes));
@@ -43,7 +43,7 @@ pub fn model_page(scene: &Scene, outcome: &Outcome, prediction: &Prediction) -> 
                 p.note { "With a probability of 95 % a finite-element reference would lie in the interval. It comes from the errors of "
                     "model C in " (any.scenes) " solved scenes of the group “" (any.stratum) "”." }
             },
-            Err(reason) => p.note { "There is no interval of what a reference would find: " (reason) "." },
+            Err(reason) => p.note { "There is no interval of what a converged reference would find: " (reason) "." },
         }
         @for line in estimates(summary) { p { (line) } }
         @if !shown.0.is_empty() { h2 { "The body" } (shown) }
@@ -77,7 +77,7 @@ fn quantities(scene: &Scene, summary: &Summary, prediction: &Prediction) -> Mark
     };
     let found = prediction.as_ref().ok();
     html! { table {
-        @if found.is_some() { thead { tr { th {} th { "model" } th { "a reference would find (95 %)" } } } }
+        @if found.is_some() { thead { tr { th {} th { "model" } th { "a converged reference would find (95 %)" } } } }
         tbody { @for quantity in own() { tr {
             th scope="row" { (named(quantity.name)) }
             td { (shown(quantity.value, quantity.unit)) }

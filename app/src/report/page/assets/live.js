@@ -355,14 +355,14 @@
     const any = predicted && Object.values(predicted)[0];
     byId("prediction").textContent = !state.models.includes("C") || !state.estimated.C || !isCurrent ? "" : any
       ? `The intervals come from the errors of model C in ${any.scenes} solved scenes of the group “${any.stratum}”.`
-      : typeof intervals === "string" ? `There is no interval of what a reference would find: ${intervals}.` : "";
+      : typeof intervals === "string" ? `There is no interval of what a converged reference would find: ${intervals}.` : "";
   }
 
   // The table without numbers: its lines, and their cells by model, "reference" and "predicted".
   function emptyTable(isPredicted) {
     const columns = state.models.map((model) => [model, model, ""]);
     if (state.scene.reference) columns.push(["reference", "Reference of the original scene", "Value and 95 % band of the stored finite-element reference of the original scene"]);
-    if (isPredicted) columns.push(["predicted", "A reference would find (95 %)", "Interval in which a finite-element reference of the present scene lies with 95 % probability"]);
+    if (isPredicted) columns.push(["predicted", "A converged reference would find (95 %)", "Interval in which a finite-element reference of the present scene lies with 95 % probability"]);
     const heading = (textContent, title = "") => make("th", { scope: "col", textContent, title });
     const head = make("tr", {}, heading("Quantity"), ...columns.map(([, text, title]) => heading(text, title)));
     const lines = state.scene.quantities.map((quantity) => {
