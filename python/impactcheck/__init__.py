@@ -59,7 +59,7 @@ def reduced(
 
     Returns:
         Summary and curves. `prediction` has for each quantity the interval (`low` to `high`) that
-        holds what a converged reference would find with 95 % on infinitely fine meshes; or it is None, and
+        holds with 95 % what a reference would find on infinitely fine meshes; or it is None, and
         `prediction_reason` states why. For models A and B, model C runs too.
 
     Raises:
