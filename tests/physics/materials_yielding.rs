@@ -114,7 +114,8 @@ fn surfaces_of_unequal_yield_strength_shake_down_as_in_finite_elements() {
             [Some(200.0), Some(800.0)],
             [25.0, 3.0, 6.0, 0.6],
             "fresh",
-            [0.1915, 0.3509, 0.4240, 0.4948],
+            // the first one of five meshes, 95 % interval +-0.0022 (one mesh of 9 elements: 0.1915)
+            [0.1921, 0.3509, 0.4240, 0.4948],
         ),
         (
             titanium,
@@ -303,9 +304,20 @@ fn the_elastic_limit_on_a_thick_plate_is_that_of_a_rigid_wall() {
 
 /// A steel sphere (Y of its own in MPa, no hardening) that strikes with `speed` m/s, of `radius` m, a block of the modulus `modulus` in Pa, the size
 /// `block` m and a strength of its own, until `end` s.
-fn on_a_block(strengths: [Option<f64>; 2], [radius, speed, modulus, block, end]: [f64; 5]) -> Summary {
+fn on_a_block(strengths: [Option<f64>; 2], numbers: [f64; 5]) -> Summary {
+    hardening_on_a_block(strengths, 0.0, numbers)
+}
+
+/// The same of materials that harden by so many GPa per plastic strain.
+fn hardening_on_a_block(
+    strengths: [Option<f64>; 2],
+    hardening: f64,
+    [radius, speed, modulus, block, end]: [f64; 5],
+) -> Summary {
     let [sphere, block_strength] = strengths.map(|strength| {
-        strength.map_or(String::new(), |y| format!(", yield_strength = \"{y} MPa\", hardening = 0"))
+        strength.map_or(String::new(), |y| {
+            format!(", yield_strength = \"{y} MPa\", hardening = \"{hardening} GPa\"")
+        })
     });
     let text = format!(
         r#"
@@ -348,16 +360,21 @@ fn deep_dents_rebound_as_in_finite_elements() {
     }
 }
 
-/// Spheres of 600 and 126 MPa on a rigid wall, as `reports/yielding.md` has them, at 105 and 269 times the speed of first yield.
+/// Spheres of 600 and 126 MPa on a rigid wall, as `reports/yielding.md` has them, at 53 to 269 times the speed of first yield; some
+/// harden, by 10 and 100 times their yield strength per plastic strain.
 #[test]
 fn deep_dents_rebound_from_a_rigid_wall_as_in_finite_elements() {
-    for (strength, speed, end, found) in [
-        (600.0, 0.996, 1e-4, 0.579),
-        (600.0, 2.552, 8e-5, 0.479),
-        (126.0, 0.02013, 2.2e-4, 0.591),
-        (126.0, 0.05157, 2e-4, 0.506),
+    for (strength, hardening, speed, end, found) in [
+        (600.0, 0.0, 0.996, 1e-4, 0.579),
+        (600.0, 0.0, 2.552, 8e-5, 0.479),
+        (126.0, 0.0, 0.02013, 2.2e-4, 0.591),
+        (126.0, 0.0, 0.05157, 2e-4, 0.506),
+        (600.0, 6.0, 0.503, 1e-4, 0.672),
+        (600.0, 60.0, 0.503, 1e-4, 0.777),
+        (600.0, 6.0, 2.552, 8e-5, 0.518),
+        (600.0, 60.0, 2.552, 8e-5, 0.682),
     ] {
-        let summary = on_a_block([Some(strength), None], [0.01, speed, 1e15, 0.1, end]);
+        let summary = hardening_on_a_block([Some(strength), None], hardening, [0.01, speed, 1e15, 0.1, end]);
         let rebound = summary.value("outer_velocity_final").unwrap() / speed;
         assert_relative_eq!(rebound, found, max_relative = 0.02);
     }

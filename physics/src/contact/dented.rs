@@ -123,8 +123,8 @@ impl DentedContact {
     pub fn new(hertz: Hertz, pair: [&Material; 2], yield_strength: [Option<f64>; 2]) -> Option<Self> {
         let modulus = 1.0 / pair.iter().map(|m| 1.0 / m.plane_strain_modulus()).sum::<f64>();
         let surfaces = [0, 1].map(|i| {
-            let law =
-                |y| ElasticPlastic::new(pair[i].plane_strain_modulus(), y, pair[i].poisson_ratio, i == 0);
+            let (modulus, hardening) = (pair[i].plane_strain_modulus(), pair[i].hardening.unwrap_or(0.0));
+            let law = |y| ElasticPlastic::new(modulus, [y, hardening], pair[i].poisson_ratio, i == 0);
             yield_strength[i].map(|y| DentedSurface { law: law(y), dent: Dent::NONE })
         });
         let weaker = weaker(&surfaces);

@@ -11,6 +11,7 @@ mod tangential;
 mod viscoelastic;
 
 pub use dented::DentedContact;
+pub(crate) use elastic_plastic::TABOR;
 pub use ellipse::{EffectiveSphere, effective_sphere};
 pub use hertz::Hertz;
 pub use patch_flexibility::{PatchFlexibility, PatchTable, RADII, TABULATED, Tabulated, WHOLE};

@@ -133,9 +133,6 @@ pub(super) fn without_effect(values: &Values, path: &str) -> Option<&'static str
     if path.starts_with("flight.") || path.starts_with("vibration.") {
         return Some("only the flight uses it; it does not change the impact");
     }
-    if of_material(".hardening").is_some() {
-        return Some("the reduced contact law omits hardening; only the reference includes it");
-    }
     let material = of_material(".yield_strength")?;
     (!has(values, &format!("{material}.hardening")))
         .then_some("without `hardening` the material stays elastic")

@@ -257,7 +257,6 @@ mod tests {
             ("outer.mass", "no numeric field `outer.mass`"),
             ("fluid.viscosity", "no numeric field"),
             ("plate.edge", "no numeric field"),
-            ("materials.steel.hardening", "omits hardening"),
             ("materials.steel.yield_strength", "without `hardening`"),
             ("reference.elements_per_contact_radius", "only the reference uses it"),
         ] {

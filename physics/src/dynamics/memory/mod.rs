@@ -23,7 +23,7 @@ use super::error_control::differences;
 use super::integration::{Converged, Integration, Options};
 use super::system::System;
 use crate::analytical::hertz::HertzImpact;
-use crate::contact::{DentedContact, Hertz, ViscoelasticContact};
+use crate::contact::{DentedContact, Hertz, TABOR, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::material::{Creep, Material, Relaxation, vibration_frequency};
 use crate::scene::Spot;
@@ -43,8 +43,6 @@ pub const CHANGE: f64 = 1e-4;
 const MOST_ROUNDS: usize = 24;
 const STRAIGHT: usize = 3;
 const CONVERGED: f64 = 1e-5;
-/// Representative plastic strain under a sphere over the contact radius over its own (Tabor, The Hardness of Metals, 1951).
-const TABOR: f64 = 0.2;
 
 /// Approaches over the critical one up to which the law of a contact that yields was compared with finite elements, and up to which it is
 /// used: beyond, contacts last so much longer than Hertz's that steps of his are the wrong ones.
@@ -53,9 +51,6 @@ const MOST_OVERLOAD: f64 = 1e4;
 
 /// Largest contact radius over the tip's for which the finite elements, of small strains, were solved.
 const WIDEST: f64 = 1.0 / 5.2;
-
-/// Share of the yield strength that hardening under a contact may come to before it is told.
-const HARDENED: f64 = 0.05;
 
 /// What the materials of an impact remember.
 #[derive(Debug, Clone)]
@@ -147,13 +142,8 @@ impl Memory {
             false => Ok(Contact::Elastic(system.laws[i])),
         };
         let contacts = [contact(0)?, contact(1)?];
-        let mut warnings: Vec<String> =
-            materials.into_iter().filter_map(|material| hardening_omitted(material, system, &hits)).collect();
-        warnings.sort();
-        warnings.dedup();
-        warnings.extend(overloaded(&contacts, &hits)?);
         Ok(Some(Self {
-            warnings,
+            warnings: overloaded(&contacts, &hits)?.into_iter().collect(),
             bodies: CreepingContacts {
                 contacts,
                 plate: Creep::new(&plate.relaxation),
@@ -280,21 +270,6 @@ fn contact(pair: [&Material; 2], hertz: Hertz, hit: &HertzImpact) -> Result<Cont
         }
         (true, Some(_)) => Err(Error::Internal("a contact that yields and relaxes".into())),
     }
-}
-
-/// A sentence if `material` hardens under contacts as hard as `hits` by more than the law without hardening can leave out.
-fn hardening_omitted(material: &Material, system: &System, hits: &[HertzImpact; 2]) -> Option<String> {
-    let plasticity = material.plasticity()?;
-    let radius = |i: usize| (hits[i].approach_peak() / system.laws[i].tip_radius).sqrt();
-    let strain = TABOR * radius(0).max(radius(1));
-    let share = strain * plasticity.hardening / plasticity.yield_strength;
-    (share > HARDENED).then(|| {
-        format!(
-            "the contact law omits hardening, but the yield stress of `{}` grows by about {:.0} % under the contacts",
-            material.name,
-            100.0 * share
-        )
-    })
 }
 
 /// A sentence if a contact as hard as one of `hits` is driven beyond what its law was found for.
