@@ -4,7 +4,8 @@
 
 solves scenes of a group that are drawn at random, as far as `ROWS/<scene>.json` is not there yet,
 writes them into `finer.jsonl` next to the table, and prints quantiles of the differences over the
-bands of the table. The program judges its prediction intervals by them.
+bands of the table, of scenes that were not solved again before. The program judges its prediction
+intervals by them.
 
     python validation/finer.py SCENES validation/base.jsonl ROWS --doubtful
 
@@ -133,9 +134,10 @@ def main() -> None:
         # what was doubtful has the values of the finer meshes already
         doubtful = [table[name] for name in chosen if name not in coarse]
         after |= {row["scene"]: {n: of[:2] for n, of in row["values"].items()} for row in doubtful}
-        lines = given.table.with_name("finer.jsonl")
-        known = {row["scene"]: row for row in read(lines)}
-        write(lines, (known | {name: line(table[name], after[name]) for name in after}).values())
+        missing = [name for name in chosen if name not in after]
+        if missing:
+            parser.error(f"not solved, so that the rest is no random sample: {', '.join(missing)}")
+        write(given.table.with_name("finer.jsonl"), (line(table[n], after[n]) for n in chosen))
     if not found:
         parser.error("no finer mesh decides a value")
     rms = float(np.sqrt(np.mean(np.square(found))))

@@ -54,7 +54,7 @@ def main() -> None:
         after = with_models(row, results(given.scenes / f"{row['scene']}.toml", given.program))
         for model in after.get("failed", {}).keys() - row.get("failed", {}).keys():
             why = after["failed"][model]
-            print(f"{row['scene']}: model {model} ran before: {why}", file=sys.stderr)
+            print(f"{row['scene']}: model {model} fails now: {why}", file=sys.stderr)
         return after
 
     write(given.table, map(renewed, read(given.table)))

@@ -5,6 +5,7 @@
 One scene a line, in the order of the names; those that were refused or not solved with the reason.
 Scenes of the table that have no new row stay. Under `values` each quantity has the reference's
 value in the limit of fine meshes, the half width of its 95 % band, and those of models A, B and C.
+`truncation` is the error of the omitted modes that the result of model C states.
 """
 
 from __future__ import annotations

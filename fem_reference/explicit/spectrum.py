@@ -19,6 +19,8 @@ CG_STEPS = 20000
 CG_TOLERANCE = 1e-7
 PLAIN_STEPS, STEPS = 60, 120
 """Most steps of inverse iteration from the last motion alone, and in all."""
+LOWER = 10.0
+"""Relative change of the square over the tolerance by which another motion is a lower one."""
 PARALLEL = 1e-8
 """Distance of unit vectors below which they are the same but for rounding."""
 
@@ -221,9 +223,11 @@ def first_frequency(
         )
         squared = _rayleigh_quotient(loop, x, mass, free)
         if abs(squared - value) <= tolerance * squared:
+            if not is_plain:
+                return math.sqrt(squared) / (2.0 * math.pi)
             lowest = _lowest_within(loop, [x, *earlier], mass, free)
             least = _rayleigh_quotient(loop, lowest, mass, free)
-            if not is_plain or least >= (1.0 - 10.0 * tolerance) * squared:
+            if least >= (1.0 - LOWER * tolerance) * squared:
                 return math.sqrt(squared) / (2.0 * math.pi)
             is_plain = False
         value, is_plain = squared, is_plain and step < PLAIN_STEPS

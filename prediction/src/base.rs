@@ -26,12 +26,12 @@ pub struct SolvedScene {
     /// Numbers of model C's result, by name, positive.
     pub results: BTreeMap<String, f64>,
     /// Error of the omitted modes that model C's result states, relative.
-    pub truncation: Option<f64>,
+    pub truncation: f64,
     /// By quantity, SI.
     pub values: BTreeMap<String, SolvedValues>,
 }
 
-/// SolvedValues of a quantity, SI, as they stand in the table; `None`: not determined.
+/// Values of a quantity, SI, as they stand in the table; `None`: not determined.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(from = "[Option<f64>; 5]")]
 pub struct SolvedValues {

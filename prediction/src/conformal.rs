@@ -28,11 +28,11 @@ pub struct Place {
 /// An error seen at a place.
 #[derive(Debug, Clone)]
 pub struct SeenError {
-    /// Of the case.
+    /// Where the case lies.
     pub place: Place,
     /// Magnitude of the error.
     pub error: f64,
-    /// What holds the error of the reference with the probability [`LEVEL`].
+    /// Half width, at [`LEVEL`], of the error of the reference that it was measured with.
     pub noise: f64,
 }
 
@@ -60,7 +60,8 @@ pub struct ErrorScale<'a> {
 }
 
 impl<'a> ErrorScale<'a> {
-    /// For intervals that hold the share [`LEVEL`] of all errors; `None` of fewer cases than that needs.
+    /// For intervals that hold the share [`LEVEL`] of all errors; `None` of fewer cases than that needs, and where the errors do not exceed
+    /// those of the references.
     pub fn new(cases: &'a [SeenError]) -> Option<Self> {
         let count = cases.len();
         // the new case counts as one
@@ -77,7 +78,7 @@ impl<'a> ErrorScale<'a> {
             .collect();
         ratios.sort_by(f64::total_cmp);
         found.quantile = ratios[rank - 1];
-        Some(found)
+        Some(found).filter(|found| found.quantile > 0.0)
     }
 
     /// Half width of the interval at `place`.
@@ -213,5 +214,13 @@ mod tests {
     fn too_few_cases_give_no_interval() {
         assert!(ErrorScale::new(&cases(18, 1)).is_none());
         assert!(ErrorScale::new(&cases(19, 1)).is_some());
+    }
+
+    /// An interval without a width would be a promise.
+    #[test]
+    fn errors_below_those_of_the_references_give_no_interval() {
+        let known: Vec<SeenError> =
+            cases(100, 1).into_iter().map(|case| SeenError { noise: 1.0, ..case }).collect();
+        assert!(ErrorScale::new(&known).is_none());
     }
 }

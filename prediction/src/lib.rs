@@ -37,9 +37,12 @@ const ANGLE: &str = "_angle";
 const RESTITUTION: &str = "_restitution";
 /// Widest band over the scale with which a reference determines a quantity.
 const DETERMINED: f64 = 0.05;
-/// What holds an error of the base's references with the probability [`LEVEL`], over their bands, which are wider than they need to be;
-/// against meshes with 1.5 times the elements in every direction (`validation/finer.py`).
-const NOISE: f64 = 0.5;
+/// Half width of the errors of the base's references at [`LEVEL`], over their stated band: 0.49 against meshes with 1.5 times the elements in
+/// every direction (`validation/finer.py`), 0.46 without the error of these. Too small a value makes intervals wider than need be, too
+/// large a one too narrow.
+const NOISE: f64 = 0.45;
+/// A quantity that the omitted modes do not change.
+const OF_ALL_MODES: &str = "first_frequency";
 
 /// What a converged reference would find of a quantity on infinitely fine meshes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -154,8 +157,10 @@ impl Similar {
         for (name, value) in &own.results {
             self.require_within(name, *value, |other| other.results.get(*name).copied())?;
         }
-        let place = place(&own.results, &own.numbers, continuum.truncation_error);
+        let stated =
+            continuum.truncation_error.ok_or("the result does not state the error of the omitted modes")?;
         let half_width = |quantity: &Quantity| {
+            let place = place(&own.results, &own.numbers, quantity.name, stated);
             let errors = errors(&self.scenes, quantity.name);
             let error = ErrorScale::new(&errors).filter(|_| errors.len() >= FEWEST)?;
             Some((quantity.name, (error.half_width(&place), errors.len())))
@@ -196,24 +201,25 @@ pub fn error(scene: &SolvedScene, model: Model, quantity: &str) -> Option<(f64, 
     let scale = scale(quantity, |name| scene.of_model(Model::C, name), scene.speed).filter(|s| *s > 0.0)?;
     let band = values.band? / scale;
     let signed = (scene.of_model(model, quantity)? - values.reference?) / scale;
-    let place = place(&scene.results, &scene.numbers, scene.truncation);
+    let place = place(&scene.results, &scene.numbers, quantity, scene.truncation);
     let is_known = !place.coordinates.is_empty() && scene.unsound.is_empty();
     let seen = SeenError { place, error: signed.abs(), noise: NOISE * band };
     (is_known && band <= DETERMINED).then_some((signed, seen))
 }
 
 /// Where a scene lies: the logarithms of the numbers of its result, or its own numbers if the result has none; with the error of the omitted
-/// modes that the result states.
+/// modes that the result states for `quantity`.
 fn place<Name>(
     results: &BTreeMap<Name, f64>,
     numbers: &BTreeMap<Name, f64>,
-    truncation: Option<f64>,
+    quantity: &str,
+    truncation: f64,
 ) -> Place {
     let mut coordinates: Vec<f64> = results.values().map(|value| value.ln()).collect();
     if coordinates.is_empty() {
         coordinates = numbers.values().copied().collect();
     }
-    Place { coordinates, stated: truncation.unwrap_or(0.0) }
+    Place { coordinates, stated: if quantity == OF_ALL_MODES { 0.0 } else { truncation } }
 }
 
 /// What the error of a quantity is relative to, by the values of a result and the `speed` of its impact in m/s: the quantity itself;

@@ -6,7 +6,7 @@ use crate::sweep;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Once, mpsc};
+use std::sync::{Arc, OnceLock, mpsc};
 use std::time::Duration;
 
 /// How long a run goes on without a word.
@@ -36,44 +36,63 @@ pub fn watched<T>(context: &Context, what: &str, work: impl FnOnce() -> T) -> T 
 pub struct Bar {
     bar: ProgressBar,
     context: Context,
-    /// The first share that was shown.
-    begun: Once,
+    begun: Arc<Begun>,
 }
 
-/// The phase of a solver's message that is to be read and kept, whatever the run does.
+/// Where the work began whose rate shows the time left: in a thousandth of all, and after so many milliseconds. The rate is the mean one:
+/// that of the last seconds says little where meshing, stepping and waiting for a contact to end take turns.
+#[derive(Default)]
+struct Begun(OnceLock<[u64; 2]>);
+
+impl Begun {
+    /// The time left, if something has been done since.
+    fn left(&self, state: &ProgressState) -> Option<Duration> {
+        let [place, time] = *self.0.get()?;
+        let done = state.pos().checked_sub(place).filter(|done| *done > 0)?;
+        let spent = state.elapsed().saturating_sub(Duration::from_millis(time));
+        let rest = WHOLE.saturating_sub(state.pos());
+        Some(spent.mul_f64(rest as f64 / done as f64))
+    }
+}
+
+/// Length of the bar.
+const WHOLE: u64 = 1000;
+
+/// The phases of a solver's messages: what is to be read and kept, whatever the run does; and the steps in time.
 const NOTE: &str = "note";
+const STEPPING: &str = "stepping";
 
 impl Bar {
     /// A bar titled `title`; hidden when the context is quiet or standard error is no terminal.
     pub fn new(context: &Context, title: &str) -> Self {
-        let bar = ProgressBar::new(1000);
+        let bar = ProgressBar::new(WHOLE);
         if context.quiet {
             bar.set_draw_target(ProgressDrawTarget::hidden());
         }
-        bar.set_prefix(title.to_owned());
-        Self { bar, context: context.clone(), begun: Once::new() }
-    }
-
-    /// Goes to a `share` of all, 0 to 1. The time left is that at the mean rate since the first one, with which a resumed run began:
-    /// the rate of the last seconds says little where meshing, stepping and waiting for a contact to end take turns.
-    fn go_to(&self, share: f64) {
-        let share = share.clamp(0.0, 1.0);
-        self.begun.call_once(|| {
+        let begun = Arc::<Begun>::default();
+        let template = "{prefix} {bar:30} {percent:>3} % {msg} [{elapsed}, {left} left]";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            let begun = begun.clone();
             let left = move |state: &ProgressState, out: &mut dyn Write| {
-                let done = f64::from(state.fraction());
-                let ratio = (1.0 - done) / (done - share);
-                let _ = match ratio.is_finite() && ratio >= 0.0 {
-                    true => write!(out, "{:#}", HumanDuration(state.elapsed().mul_f64(ratio))),
-                    false => write!(out, "?"),
+                let _ = match begun.left(state) {
+                    Some(left) => write!(out, "{:#}", HumanDuration(left)),
+                    None => write!(out, "?"),
                 };
             };
-            let template = "{prefix} {bar:30} {percent:>3} % {msg} [{elapsed}, {left} left]";
-            if let Ok(style) = ProgressStyle::with_template(template) {
-                self.bar.set_style(style.with_key("left", left));
-            }
-            self.bar.reset_elapsed();
-        });
-        self.bar.set_position((1000.0 * share) as u64);
+            bar.set_style(style.with_key("left", left));
+        }
+        bar.set_prefix(title.to_owned());
+        Self { bar, context: context.clone(), begun }
+    }
+
+    /// Goes to a `share` of all, 0 to 1.
+    fn go_to(&self, share: f64) {
+        self.bar.set_position((WHOLE as f64 * share.clamp(0.0, 1.0)) as u64);
+    }
+
+    /// Begins the work here, unless it has begun.
+    fn begin(&self) {
+        self.begun.0.get_or_init(|| [self.bar.position(), self.bar.elapsed().as_millis() as u64]);
     }
 
     /// Shows how far the solution is; a note stays.
@@ -89,12 +108,17 @@ impl Bar {
             None => format!("{phase}: {message}"),
         });
         self.go_to(share);
+        // a resumed run is back at its place by then
+        if phase == STEPPING {
+            self.begin();
+        }
     }
 
     /// Shows the part of a set-up that is being done; `done` is the share before it, 0 to 1.
     pub fn part(&self, part: &'static str, done: f64) {
         self.bar.set_message(part);
         self.go_to(done);
+        self.begin();
         // the next call may be seconds away
         self.bar.enable_steady_tick(Duration::from_millis(200));
     }

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Tolerances of the study.
 pub const TOLERANCES: [f64; 3] = [0.01, 0.03, 0.1];
 const COLUMNS: &str = "scene, group, tolerance, model, predicted_error, true_error, met, within";
-/// Largest error of a reference, with 95 %, over the tolerance that it can decide about.
+/// A reference decides where its error (95 %) is at most this share of the tolerance.
 const DECISIVE: f64 = 0.5;
 
 /// The study.
