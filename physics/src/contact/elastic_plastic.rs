@@ -16,7 +16,7 @@
 //! A material that hardens is at every flattening as one that does not and has the yield stress at a representative plastic strain (Tabor,
 //! The Hardness of Metals, 1951).
 
-use crate::numerics::root::{newton_near, root};
+use crate::numerics::root::{newton_near, root, root_from, root_near};
 use std::f64::consts::PI;
 
 /// Mean pressure of full plasticity over the yield strength, and the power of the overload with which the pressure tends to it.
@@ -36,8 +36,8 @@ const SEARCH_STEPS: usize = 60;
 
 /// Representative plastic strain over the flattening that stays: that of a deep indentation is 0.2 a/R (Tabor).
 pub const TABOR: f64 = 0.2;
-/// Step of the logarithm of the squared overload for derivatives.
-const STEP: f64 = 1e-4;
+/// Power of the squared overload with which the strength of a surface that hardens grows, about.
+const GROWS: f64 = 0.3;
 
 /// Share of the yield strength that is left at least where the surface is pulled along itself.
 const LEAST_STRENGTH: f64 = 0.1;
@@ -162,7 +162,7 @@ impl ElasticPlastic {
             hardness: 1.5 * FULL_PLASTICITY / factor,
             strongest: f64::INFINITY,
         };
-        let strongest = largest(|w| law.bears(w)[0]);
+        let strongest = largest(|w| law.strength(w));
         Self { strongest, ..law }
     }
 
@@ -178,8 +178,8 @@ impl ElasticPlastic {
             let lasting = law.flattened_at((flattening / onset).powi(2), slope).lasting;
             onset - self.onset - self.per_stress * self.hardening * TABOR * lasting
         };
-        let ends = [self.onset, flattening];
-        perfect(root(excess, ends, ends.map(excess)))
+        // both ends have a sign of their own: what is no stronger is flattened for good, what is strong enough not to yield is not
+        perfect(root_from(excess, self.onset, [self.onset, flattening]).unwrap_or(self.onset))
     }
 
     /// The same pulled along the surface by `stress` Pa in all directions: on the axis of the contact that adds to what shears it, and
@@ -243,16 +243,14 @@ impl ElasticPlastic {
         [flat, flat * if self.is_sphere { falls_away(overload, evenness * slope) } else { 1.0 }, evenness]
     }
 
-    /// Shear stress in Pa that the surface bears at the square `w` of its overload, from 1 on, and the power of `w` with which it grows there.
+    /// Shear stress in Pa that the surface bears at the square `w` of its overload.
+    fn strength(&self, w: f64) -> f64 {
+        let state = self.flattened(w);
+        state.pressure * state.shears()
+    }
+
+    /// The same from 1 on of a surface that does not harden, and the power of `w` with which it grows there.
     fn bears(&self, w: f64) -> [f64; 2] {
-        if self.hardening > 0.0 {
-            let bears = |w: f64| {
-                let state = self.flattened(w);
-                state.pressure * state.shears()
-            };
-            let [below, above] = [-STEP, STEP].map(|step: f64| bears(w * step.exp()));
-            return [bears(w), (above / below).ln() / (2.0 * STEP)];
-        }
         let overload = w.sqrt();
         let slope = self.onset * overload;
         let [flat, pressure, evenness] = self.pressures(overload, slope);
@@ -276,11 +274,15 @@ impl ElasticPlastic {
             return self.flattened(elastic);
         }
         let ends = [1.0, self.strongest];
-        let found = newton_near(|w| self.bears(w), shear, near.clamp(ends[0], ends[1]));
+        let near = near.clamp(ends[0], ends[1]);
+        let found = match self.hardening > 0.0 {
+            true => root_near(|w| self.strength(w), shear, near, GROWS),
+            false => newton_near(|w| self.bears(w), shear, near),
+        };
         if let Some(found) = found.filter(|w| (ends[0]..=ends[1]).contains(w)) {
             return self.flattened(found);
         }
-        let error = |w: f64| self.bears(w)[0] - shear;
+        let error = |w: f64| self.strength(w) - shear;
         let values = ends.map(error);
         if values[1] <= 0.0 {
             self.flattened(w.max(ends[1]))
