@@ -170,7 +170,7 @@ impl ElasticPlastic {
     /// Tabor's strain of what stays has made it stronger.
     fn hardened(&self, flattening: f64, slope: f64) -> Self {
         let perfect = |onset: f64| Self { onset, hardening: 0.0, ..*self };
-        if self.hardening == 0.0 || flattening <= self.onset {
+        if flattening <= self.onset {
             return perfect(self.onset);
         }
         let excess = |onset: f64| {
@@ -178,7 +178,7 @@ impl ElasticPlastic {
             let lasting = law.flattened_at((flattening / onset).powi(2), slope).lasting;
             onset - self.onset - self.per_stress * self.hardening * TABOR * lasting
         };
-        // both ends have a sign of their own: what is no stronger is flattened for good, what is strong enough not to yield is not
+        // there is a root: without hardening part of the flattening stays, a surface that first yields at it keeps none
         perfect(root_from(excess, self.onset, [self.onset, flattening]).unwrap_or(self.onset))
     }
 
