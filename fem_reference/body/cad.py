@@ -1,8 +1,10 @@
-"""The mesh of a CAD part: curved quadratic tetrahedra, fine at the contacts and fixed edges."""
+"""The mesh of a CAD part: curved quadratic tetrahedra, fine at contacts and singular edges."""
 
 from __future__ import annotations
 
+import math
 import tempfile
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,8 +25,8 @@ from .sizing import (
     CIRCLES,
     CONTACT_SHARE,
     EDGE_SHARE,
-    FIXED_EDGE_SHARE,
     LEAST_CONTACT_SHARE,
+    SINGULAR_EDGE_SHARE,
     ContactSize,
     Sizes,
     Walls,
@@ -46,6 +48,8 @@ POOR = 0.01
 TETRAHEDRON10 = 11
 VOLUME_ERROR = 0.01
 """Largest relative difference of the mesh's volume from the part's."""
+SHARP = math.cos(math.radians(40.0))
+"""Largest cosine between the normals on both sides of a sharp curve."""
 AT_CURVE = 0.25
 """A contact nearer to a smooth curve than this share of its elements is moved onto it."""
 
@@ -90,7 +94,7 @@ def mesh_part(scene: BodyScene, path: Path, factor: float) -> CadMesh:
     ]
     sizes = chosen_sizes(made.walls, contacts, largest_element(scene))
     faces = made.fixed_faces(scene, sizes)
-    edges = made.fixed_edges(faces, sizes)
+    edges = made.singular_edges(faces, sizes)
     for pair in made.algorithms:
         _generate(part, sizes, factor, edges, pair)
         body, number = _body(part)
@@ -137,9 +141,14 @@ class StruckPart:
         """
         return _fixed_faces(scene, self.part, self.skin, self.owner, sizes)
 
-    def fixed_edges(self, faces: list[int], sizes: Sizes) -> list[tuple[int, float]]:
-        """Sharp curves around fixed faces, and the size along each."""
-        return _fixed_edges(faces, self.skin, self.owner, sizes)
+    def singular_edges(self, fixed: list[int], sizes: Sizes) -> list[tuple[int, float]]:
+        """Curves along which the stress is singular, and the size along each.
+
+        Args:
+            fixed: tags of fixed faces.
+            sizes: away from the contacts.
+        """
+        return _singular_edges(fixed, self.skin, self.owner, sizes)
 
 
 def struck_part(scene: BodyScene, path: Path) -> StruckPart:
@@ -231,22 +240,26 @@ def _fixed_faces(scene: BodyScene, part: Part, skin: Skin, owner: Ints, sizes: S
     return sorted(set(faces))
 
 
-def _fixed_edges(
-    faces: list[int], skin: Skin, owner: Ints, sizes: Sizes
+def _singular_edges(
+    fixed: list[int], skin: Skin, owner: Ints, sizes: Sizes
 ) -> list[tuple[int, float]]:
-    """Curves around fixed faces at which the surface turns sharply, and the size along each."""
-    border: dict[int, int] = {}
-    for face in faces:
-        for _, curve in gmsh.model.getBoundary([(2, face)], combined=False, oriented=False):
-            border[curve] = border.get(curve, 0) + 1
+    """Sharp curves around fixed faces, and sharp inner corners."""
+    borders = [gmsh.model.getBoundary([(2, face)], False, False) for face in fixed]
+    times = Counter(curve for border in borders for _, curve in border)
     found = []
-    for curve in (curve for curve, times in border.items() if times == 1):
+    for _, curve in gmsh.model.getEntities(1):
+        between = [each for each in gmsh.model.getAdjacencies(1, curve)[0] if each in owner]
+        if len(between) != 2:
+            continue
         least, most = gmsh.model.getParametrizationBounds(1, curve)
         middle = np.array(gmsh.model.getValue(1, curve, [0.5 * (least[0] + most[0])]))
-        between = [each for each in gmsh.model.getAdjacencies(1, curve)[0] if each in owner]
-        normals = [skin.nearest(middle, owner == each).normal for each in between]
-        if len(normals) == 2 and normals[0] @ normals[1] < np.cos(np.radians(40.0)):
-            found.append((int(curve), FIXED_EDGE_SHARE * float(sizes.at(middle[None])[0])))
+        one, other = (skin.nearest(middle, owner == face) for face in between)
+        if one.normal @ other.normal > SHARP:
+            continue
+        inner = (skin.centres[other.face] - middle) @ one.normal > 0.0
+        if inner or times[curve] == 1:
+            size = SINGULAR_EDGE_SHARE * float(sizes.at(middle[None])[0])
+            found.append((int(curve), size))
     return found
 
 
@@ -287,7 +300,7 @@ def _generate(
     part: Part,
     sizes: Sizes,
     factor: float,
-    fixed_edges: list[tuple[int, float]],
+    edges: list[tuple[int, float]],
     algorithms: tuple[int, int],
 ) -> None:
     """Mesh the part in gmsh."""
@@ -301,7 +314,7 @@ def _generate(
     ):
         gmsh.option.setNumber(key, value)
     with tempfile.TemporaryDirectory() as folder:
-        set_sizes(sizes, factor, fixed_edges, Path(folder))
+        set_sizes(sizes, factor, edges, Path(folder))
         try:
             gmsh.model.mesh.generate(3)
         except Exception as error:

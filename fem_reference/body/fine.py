@@ -146,7 +146,7 @@ def _of_cad(scene: BodyScene, path: Path, order: int, fineness: Fineness) -> Fin
         }
         sizes = _far(made.walls, fineness, UNIT, largest_element(scene))
         faces = made.fixed_faces(scene, sizes)
-        edges = made.fixed_edges(faces, sizes)
+        edges = made.singular_edges(faces, sizes)
         contacts = _at_contacts(fineness, made.points, strikes, UNIT)
         mesh, number = _unflat(path.name, order, UNIT, sizes, contacts, edges, fineness)
         facets = _facets_of_faces(mesh, number)

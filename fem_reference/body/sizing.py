@@ -1,4 +1,4 @@
-"""Element sizes for a CAD part: by its walls, by the contacts, by the fixed edges.
+"""Element sizes for a CAD part: by its walls, by the contacts, by its singular edges.
 
 Lengths are in the unit of gmsh's model. The wall's thickness is found by rays through a first,
 coarse mesh of the surface; gmsh interpolates the sizes that follow from it on a grid.
@@ -31,8 +31,10 @@ CIRCLES = 3.0
 """Radius of the zone of smallest elements at a contact, over their size."""
 EDGE_SHARE = 0.28
 """Element at a contact over the distance of an edge: the circles stay inside the face."""
-FIXED_EDGE_SHARE = 0.5
-"""Element along a fixed edge, where the stress is singular, over that of the wall there."""
+SINGULAR_EDGE_SHARE = 0.5
+"""Element along a fixed edge or in a sharp inner corner, where the stress is singular, over that of
+the wall there. Without smaller ones a box's frequencies fall so slowly that five meshes do not show
+how far."""
 GROWTH = 0.3
 """Of the element size per distance."""
 MOST_DOFS = 250_000
@@ -177,18 +179,18 @@ def _cubes_at(size: float, wall: float, far: float) -> float:
 
 
 def set_sizes(
-    sizes: Sizes, factor: float, fixed_edges: Sequence[tuple[int, float]], folder: Path
+    sizes: Sizes, factor: float, edges: Sequence[tuple[int, float]], folder: Path
 ) -> None:
     """Make the sizes gmsh's background field.
 
     Args:
         sizes: at factor 1.
         factor: all of them times this.
-        fixed_edges: tags of sharp curves around fixed faces, and the size along each.
+        edges: tags of curves along which the stress is singular, and the size along each.
         folder: for the grid's file, which has to stay until the mesh is made.
     """
     contacts = [replace(c, size=factor * c.size, zone=factor * c.zone) for c in sizes.contacts]
-    edges = [(curve, factor * size) for curve, size in fixed_edges]
+    edges = [(curve, factor * size) for curve, size in edges]
     grid = grid_field(folder / "sizes.txt", sizes.places, lambda at: factor * sizes.at(at))
     side = float(np.ptp(sizes.places, axis=0).max())
     requested = [each.size for each in contacts] + [size for _, size in edges]

@@ -86,6 +86,24 @@ def test_the_plate_is_meshed_with_its_rim_fixed(plate_step: Path, tmp_path: Path
         assert contact["element_size"] == pytest.approx(0.48e-3, rel=0.25)
 
 
+def test_sharp_inner_corners_have_elements_half_as_large(tmp_path: Path) -> None:
+    def angle() -> None:
+        occ = gmsh.model.occ
+        arms = [(3, occ.addBox(0, 0, 0, *size)) for size in ((12, 4, 2), (2, 4, 12))]
+        occ.fuse(arms[:1], arms[1:])
+
+    path = write_cad(tmp_path / "angle.step", angle)
+    body = made(path, [0.0, 0.002, 0.009], 2.0, fixed=[[0.012, 0.002, 0.001]]).body
+    corners = body.points[np.unique(body.cells[:, :4])]
+
+    def between_nodes(x: float, z: float) -> float:
+        along = np.all(np.abs(corners[:, [0, 2]] - (x, z)) < 1e-9, axis=1)
+        return 0.004 / (np.count_nonzero(along) - 1)
+
+    inner, outer = between_nodes(0.002, 0.002), between_nodes(0.0, 0.0)
+    assert inner == pytest.approx(0.5 * outer, rel=0.25), "sharp, but convex"
+
+
 def test_a_mesh_is_the_same_every_time(disc_step: Path) -> None:
     first, again = (made(disc_step, "top", fixed=["rim"]) for _ in range(2))
     assert np.array_equal(first.body.points, again.body.points)

@@ -10,7 +10,7 @@ pub use set_up::announce_set_ups;
 
 use super::{Approach, ClosedForm, Feature, Form, Starter, Use};
 use crate::error::Result;
-use crate::scene::{Model, Scene, Shape};
+use crate::scene::{Geometry, Model, Scene, Shape};
 use std::path::Path;
 
 impl super::Kind for Kind {
@@ -24,6 +24,10 @@ impl super::Kind for Kind {
 
     fn features(&self) -> &'static [Feature] {
         &features::FEATURES
+    }
+
+    fn revision(&self, _: Geometry) -> u32 {
+        2
     }
 
     fn body_file<'a>(&self, scene: &'a Scene) -> Option<&'a Path> {
