@@ -72,6 +72,24 @@ def test_a_plate_given_as_step_is_the_circular_plate(
     assert abs(ours["first_frequency"] / truth["first_frequency"] - 1.0) < 0.005
 
 
+@pytest.mark.evidence
+@pytest.mark.parametrize(("radius", "speed", "shipped"), STRUCK)
+def test_the_reference_of_a_plate_given_as_step_is_that_of_the_circular_plate(
+    plates: Path, radius: str, speed: str, shipped: str
+) -> None:
+    """Solid elements of `coarse` beside the stored axisymmetric ones, half an hour a plate."""
+    body = 'file = "plate-33.step"\nfixed = [["33 mm", "0 mm", "0 mm"]]'
+    name = scene(plates, body, inner='at = ["0 mm", "0 mm", "-1 mm"]', radius=radius, speed=speed)
+    run(plates, "--store", shipped, "reference", name, "--resolution", "coarse")
+    (solution,) = (plates / shipped).glob("*/coarse/summary.json")
+    ours = json.loads(solution.read_text())
+    solutions = SCENES.parent / "fem_reference" / "solutions"
+    truth = json.loads((solutions / shipped / "paper" / "summary.json").read_text())
+    for key in ("efficiency", "outer_force_peak", "inner_force_peak", "first_frequency"):
+        both = math.hypot(*(each["uncertainty"][key] for each in (ours, truth)))
+        assert abs(ours[key] - truth[key]) < both, key
+
+
 ONE_LAYER = """
 import gmsh
 gmsh.initialize()
