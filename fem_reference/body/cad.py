@@ -48,6 +48,10 @@ POOR = 0.01
 TETRAHEDRON10 = 11
 VOLUME_ERROR = 0.01
 """Largest relative difference of the mesh's volume from the part's."""
+PLACES = (0.5, 0.2, 0.8)
+"""Along a curve, where it may be sharp: where a pipe joins another it is so at the sides alone."""
+MOST_INNER_CORNERS = 24
+"""That get smaller elements: a part may have a thousand."""
 SHARP = math.cos(math.radians(40.0))
 """Largest cosine between the normals on both sides of a sharp curve."""
 AT_CURVE = 0.25
@@ -148,7 +152,7 @@ class StruckPart:
             fixed: tags of fixed faces.
             sizes: away from the contacts.
         """
-        return _singular_edges(fixed, self.skin, self.owner, sizes)
+        return _singular_edges(fixed, list(self.strikes.values()), self.skin, self.owner, sizes)
 
 
 def struck_part(scene: BodyScene, path: Path) -> StruckPart:
@@ -241,26 +245,37 @@ def _fixed_faces(scene: BodyScene, part: Part, skin: Skin, owner: Ints, sizes: S
 
 
 def _singular_edges(
-    fixed: list[int], skin: Skin, owner: Ints, sizes: Sizes
+    fixed: list[int], strikes: list[Strike], skin: Skin, owner: Ints, sizes: Sizes
 ) -> list[tuple[int, float]]:
-    """Sharp curves around fixed faces, and sharp inner corners."""
+    """Sharp curves around fixed faces, and sharp inner corners, of many those near contacts."""
     borders = [gmsh.model.getBoundary([(2, face)], False, False) for face in fixed]
     times = Counter(curve for border in borders for _, curve in border)
-    found = []
-    for _, curve in gmsh.model.getEntities(1):
+    contacts = np.array([strike.place for strike in strikes])
+
+    def away(curve: int) -> float:
+        return float(np.linalg.norm(contacts - _along(curve, 0.5), axis=1).min())
+
+    found, inner_corners = [], 0
+    for curve in sorted((curve for _, curve in gmsh.model.getEntities(1)), key=away):
+        held = times[curve] == 1
         between = [each for each in gmsh.model.getAdjacencies(1, curve)[0] if each in owner]
-        if len(between) != 2:
+        if len(between) != 2 or not (held or inner_corners < MOST_INNER_CORNERS):
             continue
-        least, most = gmsh.model.getParametrizationBounds(1, curve)
-        middle = np.array(gmsh.model.getValue(1, curve, [0.5 * (least[0] + most[0])]))
-        one, other = (skin.nearest(middle, owner == face) for face in between)
-        if one.normal @ other.normal > SHARP:
-            continue
-        inner = (skin.centres[other.face] - middle) @ one.normal > 0.0
-        if inner or times[curve] == 1:
-            size = SINGULAR_EDGE_SHARE * float(sizes.at(middle[None])[0])
-            found.append((int(curve), size))
+        for at in (_along(curve, share) for share in PLACES):
+            one, other = (skin.nearest(at, owner == face) for face in between)
+            inner = (skin.centres[other.face] - at) @ one.normal > 0.0
+            if one.normal @ other.normal <= SHARP and (held or inner):
+                size = SINGULAR_EDGE_SHARE * float(sizes.at(at[None])[0])
+                found.append((curve, size))
+                inner_corners += not held
+                break
     return found
+
+
+def _along(curve: int, share: float) -> Floats:
+    """The place at a share of a curve's parameter."""
+    least, most = (float(end[0]) for end in gmsh.model.getParametrizationBounds(1, curve))
+    return np.array(gmsh.model.getValue(1, curve, [least + share * (most - least)]))
 
 
 def _algorithms(part: Part) -> list[tuple[int, int]]:

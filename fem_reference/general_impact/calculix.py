@@ -33,7 +33,7 @@ from .scene import Scene
 from .solve import Meshed, on_fitting_mesh
 
 NAME = "CalculiX"
-REVISION = 1
+REVISION = 2
 """Counts changes of the method that make kept results useless."""
 COARSER = 0.5
 """Elements in every direction for one that is requested: every step factorises a matrix."""

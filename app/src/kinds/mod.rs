@@ -66,6 +66,11 @@ pub trait Kind: physics::Kind {
         1
     }
 
+    /// The same of the results by CalculiX.
+    fn calculix_revision(&self) -> u32 {
+        1
+    }
+
     /// Hash of the geometry that a mesh file belongs to, if there is such a file.
     fn geometry_hash(&self, _: &Scene) -> Option<String> {
         None

@@ -14,9 +14,6 @@ pub fn revision(scene: &Scene) -> u32 {
     kinds::of(scene).revision(scene.reference.geometry)
 }
 
-/// The same of the results by CalculiX.
-const CALCULIX_REVISION: u32 = 1;
-
 /// Keys of a scene that concern no reference.
 const FOREIGN: [&str; 3] = ["reduced", "tolerances", "external"];
 /// Other keys that no exact solution depends on, and the hashes beside them.
@@ -31,7 +28,7 @@ pub fn settings_hash(scene: &Scene, resolution: Resolution) -> String {
         return sha256_hex(canonical(&json!({ "resolution": resolution })).as_bytes());
     }
     let revision = match resolution {
-        Resolution::Calculix(_) => CALCULIX_REVISION,
+        Resolution::Calculix(_) => kinds::of(scene).calculix_revision(),
         _ => revision(scene),
     };
     let settings = json!({ "reference": scene.reference, "resolution": resolution, "revision": revision });

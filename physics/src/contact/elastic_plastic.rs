@@ -36,9 +36,11 @@ const SEARCH_STEPS: usize = 60;
 
 /// Representative plastic strain over the flattening that stays: that of a deep indentation is 0.2 a/R (Tabor).
 pub const TABOR: f64 = 0.2;
-/// Most steps of Newton's method for what hardening adds, and the step, relative, from which on the next one ends at rounding.
-const NEWTON_STEPS: usize = 12;
+/// Most steps of an iteration for what hardening adds, and the step, relative, from which on the next one ends at rounding.
+const MOST_STEPS: usize = 12;
 const CLOSE: f64 = 1e-8;
+/// Relative error of a stress at which it has been found.
+const FITS: f64 = 1e-7;
 
 /// Share of the yield strength that is left at least where the surface is pulled along itself.
 const LEAST_STRENGTH: f64 = 0.1;
@@ -185,13 +187,13 @@ impl ElasticPlastic {
 
     /// Flattening that stays at an overload over that at first yield, without hardening; the last argument is what [`Self::pressures`]
     /// gives there.
-    fn keeps(&self, overload: f64, [_, pressure, evenness]: [f64; 3]) -> f64 {
+    fn kept(&self, overload: f64, [_, pressure, evenness]: [f64; 3]) -> f64 {
         let bends = Flattened { evenness, ..Flattened::NONE }.bends();
         overload - bends * pressure / self.modulus / self.onset
     }
 
     /// Its derivative by the overload, where the logarithm of the pressure has the derivative `growth`.
-    fn keeping(&self, [_, pressure, evenness]: [f64; 3], growth: f64) -> f64 {
+    fn kept_growth(&self, [_, pressure, evenness]: [f64; 3], growth: f64) -> f64 {
         let bends = Flattened { evenness, ..Flattened::NONE }.bends();
         let evens = EVENS * (1.0 - evenness) * (EVEN[1] - HERTZ);
         1.0 - (evens + bends * growth) * pressure / self.modulus / self.onset
@@ -202,14 +204,13 @@ impl ElasticPlastic {
         if flattening <= self.onset {
             return self.perfect(self.onset);
         }
-        // the onset is that of a virgin surface and what the lasting flattening adds: flattening/overload = onset/(1 - hardens keeps)
+        // the onset is that of a virgin surface and what the lasting flattening adds: flattening/overload = onset/(1 - hardens kept)
         let mut overload = self.about_overload(flattening);
-        for _ in 0..NEWTON_STEPS {
+        for _ in 0..MOST_STEPS {
             let now = self.pressures(overload, slope);
-            let keeping = self.keeping(now, self.grows(overload, [slope, 0.0], now).iter().sum());
-            let miss =
-                self.onset * overload - flattening * (1.0 - self.hardens() * self.keeps(overload, now));
-            let step = miss / (self.onset + flattening * self.hardens() * keeping);
+            let kept_growth = self.kept_growth(now, self.grows(overload, [slope, 0.0], now).iter().sum());
+            let miss = self.onset * overload - flattening * (1.0 - self.hardens() * self.kept(overload, now));
+            let step = miss / (self.onset + flattening * self.hardens() * kept_growth);
             overload = (overload - step).max(1.0);
             if step.abs() <= CLOSE * overload {
                 break;
@@ -218,16 +219,16 @@ impl ElasticPlastic {
         self.perfect(flattening / overload)
     }
 
-    /// The same at the `overload` of that surface, on something that does not yield.
+    /// That surface where its own `overload` is known, the slope being that of this surface alone.
     fn hardened_to(&self, overload: f64) -> Self {
         if self.hardening == 0.0 {
             return *self;
         }
         let mut onset = self.onset;
-        for _ in 0..NEWTON_STEPS {
-            let keeps = self.keeps(overload, self.pressures(overload, onset * overload));
+        for _ in 0..MOST_STEPS {
+            let kept = self.kept(overload, self.pressures(overload, onset * overload));
             let before = onset;
-            onset = self.onset / (1.0 - self.hardens() * keeps);
+            onset = self.onset / (1.0 - self.hardens() * kept);
             if !self.is_sphere || (onset - before).abs() <= CLOSE * onset {
                 break;
             }
@@ -325,8 +326,8 @@ impl ElasticPlastic {
         let shears = Flattened { evenness, ..Flattened::NONE }.shears();
         let evens = EVENS * (1.0 - evenness) * (SHEAR[1] - SHEAR[0]) / shears;
         let [of_flat, of_slope] = law.grows(overload, [slope, law.onset], now);
-        let keeping = law.keeping(now, of_flat + of_slope);
-        let stronger = self.hardens() * keeping * law.onset / self.onset;
+        let kept_growth = law.kept_growth(now, of_flat + of_slope);
+        let stronger = self.hardens() * kept_growth * law.onset / self.onset;
         [pressure * shears, 0.5 * overload * (of_flat + evens + of_slope + stronger)]
     }
 
@@ -339,12 +340,21 @@ impl ElasticPlastic {
         }
         let ends = [1.0, self.strongest];
         let near = near.clamp(ends[0], ends[1]);
-        let about = self.about_overload(self.onset * near.sqrt()).powi(2);
-        if let Some(found) = newton_near(|w| self.bears(w), shear, about).filter(|&w| w >= 1.0) {
-            let state = self.hardened_to(found.sqrt()).flattened(found);
-            let approach = (state.flattening / self.onset).powi(2);
-            if approach <= self.strongest {
-                return Flattened { approach, ..state };
+        let about = match self.hardening > 0.0 {
+            true => self.about_overload(self.onset * near.sqrt()).powi(2),
+            false => near,
+        };
+        if let Some(found) = newton_near(|w| self.bears(w), shear, about) {
+            let approach = match self.hardening > 0.0 {
+                true => found * (self.hardened_to(found.sqrt()).onset / self.onset).powi(2),
+                false => found,
+            };
+            // beside the overload at which hardening has no bound a last step may lead anywhere
+            if (ends[0]..=ends[1]).contains(&approach) {
+                let state = self.flattened(approach);
+                if (state.pressure * state.shears() / shear - 1.0).abs() < FITS {
+                    return state;
+                }
             }
         }
         let error = |w: f64| self.strength(w) - shear;
@@ -431,7 +441,9 @@ mod tests {
     /// Up to half as far again as the curves were found.
     #[test]
     fn everything_grows_with_the_flattening() {
-        for stresses in [[100e6, 0.0], [600e6, 0.0], [2000e6, 0.0], [600e6, 6e9], [600e6, 60e9]] {
+        for stresses in
+            [[100e6, 0.0], [600e6, 0.0], [2000e6, 0.0], [600e6, 6e9], [600e6, 60e9], [600e6, 6e23]]
+        {
             let law = ElasticPlastic::new(MODULUS, stresses, 0.3, false);
             let mut before = Flattened::NONE;
             for k in 1..2400 {

@@ -30,6 +30,10 @@ impl super::Kind for Kind {
         2
     }
 
+    fn calculix_revision(&self) -> u32 {
+        2
+    }
+
     fn body_file<'a>(&self, scene: &'a Scene) -> Option<&'a Path> {
         Some(&scene.general_impact().ok()?.body()?.file)
     }
