@@ -15,6 +15,7 @@ import meshio
 import numpy as np
 import pytest
 
+from fem_reference.body.cad import struck_part
 from fem_reference.body.files import gmsh_session
 from fem_reference.body.mesh_file import Meshed, groups_of, meshed
 from fem_reference.body.part import coarse_skin, load
@@ -102,6 +103,30 @@ def test_sharp_inner_corners_have_elements_half_as_large(tmp_path: Path) -> None
 
     inner, outer = between_nodes(0.002, 0.002), between_nodes(0.0, 0.0)
     assert inner == pytest.approx(0.5 * outer, rel=0.25), "sharp, but convex"
+
+
+def test_of_many_inner_corners_those_near_the_contact_count(tmp_path: Path) -> None:
+    def pockets() -> None:
+        occ = gmsh.model.occ
+        plate = occ.addBox(0, 0, 0, 60, 6, 4)
+        tools = [(3, occ.addBox(2 + 7 * k, 2, 2, 3, 2, 2)) for k in range(8)]
+        occ.cut([(3, plate)], tools)
+
+    def pipes() -> None:
+        occ = gmsh.model.occ
+        one, other = occ.addCylinder(-30, 0, 0, 60, 0, 0, 10), occ.addCylinder(0, 0, 0, 0, 0, 30, 8)
+        occ.fuse([(3, one)], [(3, other)])
+
+    for build, at, count in ((pockets, [0.059, 0.003, 0.0], 24), (pipes, [0.0, 0.0, 0.03], 2)):
+        path = write_cad(tmp_path / f"{count}.step", build)
+        with gmsh_session():
+            part = struck_part(parse_body_scene(document(path, at)), path)
+            found = part.singular_edges([], chosen_sizes(part.walls, [], None))
+            boxes = [gmsh.model.getBoundingBox(1, curve) for curve, _ in found]
+        # where one pipe joins the other it is sharp at its sides alone
+        assert len(found) == count
+        if build is pockets:
+            assert min(box[0] for box in boxes) > 30.0
 
 
 def test_a_mesh_is_the_same_every_time(disc_step: Path) -> None:
