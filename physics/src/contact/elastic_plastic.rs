@@ -170,7 +170,7 @@ impl ElasticPlastic {
     }
 
     /// The surface without hardening that first yields at `onset`.
-    fn perfect(&self, onset: f64) -> Self {
+    fn without_hardening(&self, onset: f64) -> Self {
         Self { onset, hardening: 0.0, ..*self }
     }
 
@@ -202,7 +202,7 @@ impl ElasticPlastic {
     /// The surface without hardening that is as strong as this one is at a `flattening`, where the contact radius is `slope` of the tip's.
     fn hardened(&self, flattening: f64, slope: f64) -> Self {
         if flattening <= self.onset {
-            return self.perfect(self.onset);
+            return self.without_hardening(self.onset);
         }
         // the onset is that of a virgin surface and what the lasting flattening adds: flattening/overload = onset/(1 - hardens kept)
         let mut overload = self.about_overload(flattening);
@@ -216,7 +216,7 @@ impl ElasticPlastic {
                 break;
             }
         }
-        self.perfect(flattening / overload)
+        self.without_hardening(flattening / overload)
     }
 
     /// That surface where its own `overload` is known, the slope being that of this surface alone.
@@ -233,7 +233,7 @@ impl ElasticPlastic {
                 break;
             }
         }
-        self.perfect(onset)
+        self.without_hardening(onset)
     }
 
     /// The same pulled along the surface by `stress` Pa in all directions: on the axis of the contact that adds to what shears it, and
@@ -349,7 +349,7 @@ impl ElasticPlastic {
                 true => found * (self.hardened_to(found.sqrt()).onset / self.onset).powi(2),
                 false => found,
             };
-            // beside the overload at which hardening has no bound a last step may lead anywhere
+            // close to the overload at which hardening has no bound a last step may lead anywhere
             if (ends[0]..=ends[1]).contains(&approach) {
                 let state = self.flattened(approach);
                 if (state.pressure * state.shears() / shear - 1.0).abs() < FITS {
