@@ -77,7 +77,7 @@ def test_a_plate_given_as_step_is_the_circular_plate(
 def test_the_reference_of_a_plate_given_as_step_is_that_of_the_circular_plate(
     plates: Path, radius: str, speed: str, shipped: str
 ) -> None:
-    """Solid elements of `coarse` beside the stored axisymmetric ones, half an hour a plate."""
+    """Solid elements of `coarse` against the stored axisymmetric ones, half an hour a plate."""
     body = 'file = "plate-33.step"\nfixed = [["33 mm", "0 mm", "0 mm"]]'
     name = scene(plates, body, inner='at = ["0 mm", "0 mm", "-1 mm"]', radius=radius, speed=speed)
     run(plates, "--store", shipped, "reference", name, "--resolution", "coarse")
