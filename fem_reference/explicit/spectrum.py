@@ -181,7 +181,6 @@ def first_frequency(
     tolerance: float = 1e-6,
     start: Floats | None = None,
     floating: Floating | None = None,
-    precondition: Precondition | None = None,
 ) -> float:
     """Lowest eigenfrequency of a body, Hz, by inverse iteration from the motion along ``axis``.
 
@@ -190,8 +189,7 @@ def first_frequency(
 
     A body that is free along ``axis`` keeps that motion out of the iteration. ``start`` (3 n,) is
     another motion to begin with, where the lowest mode may not contain that along ``axis``;
-    ``floating`` the rigid motions, where there may be others than a force along it causes;
-    ``precondition`` as of `conjugate_gradients`.
+    ``floating`` the rigid motions, where there may be others than a force along it causes.
     """
     free = free_components(loop, body)
     mass = np.repeat(loop.mass, 3)
@@ -218,7 +216,6 @@ def first_frequency(
                 balanced,
                 start=x / value if value else None,
                 tolerance=1e-4,
-                precondition=precondition,
             )
         )
         squared = _rayleigh_quotient(loop, x, mass, free)

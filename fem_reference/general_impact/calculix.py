@@ -7,6 +7,7 @@ compliance shrink together along a series of meshes, so that its bands are of al
 
 from __future__ import annotations
 
+import math
 import tempfile
 import time
 from dataclasses import dataclass, replace
@@ -22,18 +23,19 @@ from ..common.errors import SolverError
 from ..common.memory import Elements, memory_needed, require_memory
 from ..common.progress import Report
 from ..common.settings import Settings
+from ..explicit.excited import EXCITED
 from ..solid.system import make_loop
 from .calculix_model import AT, PENALTY, Model, modal_deck, model
 from .calculix_observed import Observed, first_over, run_of
 from .ending import Bodies, Softness, softness
 from .estimate import Sizes
-from .model import ImpactModel
+from .model import STRUCK, ImpactModel
 from .run import LONGEST_RUN, Run
 from .scene import Scene
 from .solve import Meshed, on_fitting_mesh
 
 NAME = "CalculiX"
-REVISION = 2
+REVISION = 3
 """Counts changes of the method that make kept results useless."""
 COARSER = 0.5
 """Elements in every direction for one that is requested: every step factorises a matrix."""
@@ -48,10 +50,8 @@ MOST_HALVED = 3
 """Times that the steps are halved where one diverges: the first touch may need shorter ones."""
 CHANGES = 0.02
 """See `Steps.changes`; the step after makes up for what is left."""
-MODES = 12
-"""Eigenfrequencies among which the first one is that the contacts excite."""
-EXCITED = 0.02
-"""Least motion of such a mode at a contact over the largest of all modes."""
+MODES = 16
+"""Lowest eigenfrequencies among which the first one is that the contacts excite."""
 PER_NODE = 1.2e3
 """Memory of a run per node^(4/3), bytes: the factorised matrix of a solid."""
 
@@ -176,17 +176,20 @@ def method(scene: Scene) -> list[Any]:
 
 
 def first_frequency(made: Model, folder: Path) -> float:
-    """Lowest eigenfrequency of what is struck that moves where it is struck, Hz.
+    """Lowest eigenfrequency of what is struck that the contacts excite, Hz.
 
     Raises:
         SolverError: there is none among the lowest, or CalculiX failed.
     """
     rigid = 6 if made.is_free else 0
     printed = program.run(modal_deck(made).modes(MODES + rigid), folder, lambda _: False)
-    found = MILLI * frequencies(printed)[rigid:]
     names = [f"O{AT}{side.name.upper()}" for side in made.made.sides]
-    moved = abs(shapes(printed, names)[rigid:]).max(axis=1)
-    return float(found[(moved > EXCITED * moved.max()).argmax()])
+    # of modal mass 1 g
+    moved = abs(shapes(printed, names)).max(axis=1) * math.sqrt(MILLI * made.masses[STRUCK])
+    excited = MILLI * frequencies(printed)[rigid:][moved[rigid:] > EXCITED]
+    if excited.size == 0:
+        raise SolverError(f"the contacts excite none of the {MODES} lowest modes of the body")
+    return float(excited[0])
 
 
 def _impact(

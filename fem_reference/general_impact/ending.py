@@ -5,20 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..common.arrays import Floats
 from ..explicit.energies import Energies
-from ..explicit.free_motions import FreeMotions, flexibility, static_shape
+from ..explicit.excited import excited_frequency
+from ..explicit.free_motions import FreeMotions, flexibility
 from ..explicit.loop import Loop
-from ..explicit.spectrum import first_frequency, free_components
+from ..explicit.spectrum import free_components
 from ..impact.ending import Approach, Ending
 from ..solid.two_level import TwoLevel
 from .model import STRUCK, ImpactModel
 from .motion import Motion
-
-FREQUENCY_TOLERANCE = 2e-6
-"""Relative change of the square of the first frequency at which its iteration ends."""
 
 
 class Bodies:
@@ -51,22 +47,17 @@ class Bodies:
         return energies.elastic[body] - 0.5 * float(moving @ moving)
 
     def first_frequency(self) -> float:
-        """Lowest frequency of what is struck that the contacts excite, Hz."""
-        floating = self.floating[STRUCK]
-        shapes = [
-            static_shape(
-                *(self.loop, STRUCK, side.patch.load(self.loop, STRUCK)),
-                *(floating, self.precondition(STRUCK)),
-            )
-            for side in self.made.sides
-        ]
-        return first_frequency(
+        """Lowest frequency of what is struck that the contacts excite, Hz.
+
+        Raises:
+            SolverError: none was found.
+        """
+        return excited_frequency(
             self.loop,
             STRUCK,
-            tolerance=FREQUENCY_TOLERANCE,
-            start=np.sum(shapes, axis=0),
-            floating=floating,
-            precondition=self.precondition(STRUCK),
+            [side.patch.load(self.loop, STRUCK) for side in self.made.sides],
+            self.floating[STRUCK],
+            self.precondition(STRUCK),
         )
 
     def flexibility(self, body: int, load: Floats) -> float:

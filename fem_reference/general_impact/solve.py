@@ -24,7 +24,7 @@ from .model import ImpactModel, impact_model
 from .run import Run, integrate
 from .scene import Scene
 
-REVISION = 4
+REVISION = 5
 """Counts changes of the method that make older checkpoints useless."""
 MOST_MESHES = 4
 LEAST_SHARE, LARGEST_SHARE = 0.95, 1.1

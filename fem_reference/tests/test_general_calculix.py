@@ -13,6 +13,7 @@ from typing import Any
 import gmsh
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 from fem_reference.calculix.deck import Steps
 from fem_reference.calculix.tets import Tetrahedra, nodal_volumes
@@ -25,11 +26,13 @@ from fem_reference.general_impact.calculix_model import (
     require_supported,
     rigid_motions,
 )
+from fem_reference.general_impact.ending import Bodies
 from fem_reference.general_impact.estimate import Sizes, estimate
 from fem_reference.general_impact.model import impact_model
 from fem_reference.general_impact.result import quantities
 from fem_reference.general_impact.scene import Scene, parse_scene
 from fem_reference.solid.mesh import TetMesh, surface, tetrahedra
+from fem_reference.solid.system import make_loop
 
 from .bodies import write_cad
 from .conftest import STEEL
@@ -181,18 +184,29 @@ def test_what_the_deck_does_not_describe_is_refused(tmp_path: Path) -> None:
     refused(parse_scene(two), "body is missing")
 
 
-@needs_calculix
-def test_the_first_frequency_is_one_that_the_contact_excites(tmp_path: Path) -> None:
+@pytest.mark.parametrize("opposite", [False, True])
+@pytest.mark.parametrize("program", ["explicit", pytest.param("CalculiX", marks=needs_calculix)])
+def test_the_first_frequency_is_one_that_the_contact_excites(
+    program: str, opposite: bool, tmp_path: Path
+) -> None:
     """A free beam, 3 mm wide and 5 mm high, struck from above: not its lateral mode.
+
+    A body that lies below the first contact does not hinder the mode that moves both.
 
     Bernoulli's frequency with the correction for shear and rotary inertia of ASTM E1876.
     """
     length, width, height = 0.06, 0.003, 0.005
     file = write_cad(tmp_path / "beam.step", cuboid(60, 3, 5))
     at = [0.5 * length, 0.5 * width, height]
-    made = on_mesh(parse_scene(document(file, [at], [])), file, 0.4)
-    found = calculix.first_frequency(made, tmp_path / "modes")
-    steel = parse_scene(document(file, [at], [])).outer.material
+    below = [[at[0], at[1], 0.0]] if opposite else []
+    scene = parse_scene(document(file, [at, *below], []))
+    made = on_mesh(scene, file, 0.4)
+    if program == "CalculiX":
+        found = calculix.first_frequency(made, tmp_path / "modes")
+    else:
+        loop = make_loop(made.made.model, MPI.COMM_SELF, 1)
+        found = Bodies(loop, made.made).first_frequency()
+    steel = scene.outer.material
     nu, slender = steel.poisson_ratio, (height / length) ** 2
     shear = 1.0 + 6.338 * (1.0 + 0.1408 * nu + 1.536 * nu**2) * slender
     factor = 1.0 + 6.585 * (1.0 + 0.0752 * nu + 0.8109 * nu**2) * slender - 0.868 * slender**2
@@ -208,8 +222,6 @@ def test_a_small_impact_keeps_its_balances_and_agrees_with_the_explicit_solver(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A sphere on a block that stands on a face, on one coarse mesh each."""
-    from mpi4py import MPI
-
     file = write_cad(tmp_path / "block.step", cuboid(6, 6, 4))
     scene = parse_scene(document(file, [[0.003, 0.003, 0.004]], [[0.003, 0.003, 0.0]]))
     monkeypatch.setattr(calculix, "STEPS", 100.0)

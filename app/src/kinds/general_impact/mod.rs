@@ -27,11 +27,11 @@ impl super::Kind for Kind {
     }
 
     fn revision(&self, _: Geometry) -> u32 {
-        2
+        3
     }
 
     fn calculix_revision(&self) -> u32 {
-        2
+        3
     }
 
     fn body_file<'a>(&self, scene: &'a Scene) -> Option<&'a Path> {

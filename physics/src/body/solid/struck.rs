@@ -31,6 +31,9 @@ const DEPENDENT: f64 = 1e-9;
 /// Least share of the pressure that lies on the surface, and largest one that lies on held nodes.
 const COVERED: f64 = 0.99;
 const HELD: f64 = 0.01;
+/// Motion of a contact along its normal, over the root mean square of the mode's displacement, from which on the contact counts as exciting
+/// it: an unsymmetrical mesh moves it a little in any mode. The references have the same number.
+const EXCITED: f64 = 0.1;
 /// Least eigenvalue over the largest of the products of independent rigid motions on what is held.
 const INDEPENDENT: f64 = 1e-8;
 
@@ -158,6 +161,16 @@ impl StruckSolid {
             })
             .collect();
         Ok(body)
+    }
+
+    /// The lowest frequency in Hz that the contacts excite, the first material being `material`; infinite if there is none.
+    pub fn first_frequency(&self, material: &Material) -> f64 {
+        let moved = |k: usize| {
+            self.participation[k].iter().map(|circles| circles[MIDDLE].abs()).fold(0.0, f64::max)
+        };
+        let excited = (0..self.omega.len()).find(|k| moved(*k) * self.mass.sqrt() > EXCITED);
+        let omega = excited.map_or(f64::INFINITY, |k| self.omega[k]);
+        omega * (material.youngs_modulus / material.density).sqrt() / (2.0 * std::f64::consts::PI)
     }
 
     /// The same of a body whose first material is `material`.

@@ -71,9 +71,13 @@ impl Between {
             tip(&given.shape, &given.material, patch[0]),
             inner.map_or(0.0, |inner| tip(&inner.shape, &inner.material, patch[1])),
         ];
-        let join = |modal: ModalBody| match &moving {
-            Some(inner) => System::between(&[outer.clone(), inner.clone()], &modal, faces, tips),
-            None => System::on_body(outer.clone(), &modal, faces[0], tips[0]),
+        let first_frequency = elastic.own.first_frequency(body.materials.named(None));
+        let join = |modal: ModalBody| {
+            let system = match &moving {
+                Some(inner) => System::between(&[outer.clone(), inner.clone()], &modal, faces, tips),
+                None => System::on_body(outer.clone(), &modal, faces[0], tips[0]),
+            };
+            System { first_frequency, ..system }
         };
         let (own, other) = elastic.modal(body, patch);
         let system = join(own);
