@@ -95,6 +95,11 @@ impl UnitPlate {
 
     /// Deflection in every mass-normalised mode at the `radii`, 0 to 1, where cos(n phi) is 1. Shape (modes, radii).
     pub fn deflection(&self, radii: &[f64]) -> Vec<Vec<f64>> {
+        self.derivative(0, radii)
+    }
+
+    /// Derivative of that `order`, at most 2, along the radius. Shape (modes, radii).
+    fn derivative(&self, order: usize, radii: &[f64]) -> Vec<Vec<f64>> {
         let fixed = fixed_unknowns(self.edge, self.elements, self.diameters);
         let row = |unknown: usize| {
             (!fixed.contains(&unknown)).then(|| unknown - fixed.iter().filter(|f| **f < unknown).count())
@@ -104,7 +109,7 @@ impl UnitPlate {
             let element = ((r / length) as usize).min(self.elements - 1);
             let shapes = shape_functions(2.0 * (r / length - element as f64) - 1.0, length);
             let value = |(i, shape): (usize, &[f64; 3])| {
-                row(unknown(element, i)).map_or(0.0, |row| shape[0] * self.shapes[(row, mode)])
+                row(unknown(element, i)).map_or(0.0, |row| shape[order] * self.shapes[(row, mode)])
             };
             shapes.iter().enumerate().map(value).sum()
         };
@@ -118,6 +123,15 @@ impl UnitPlate {
         let mut shapes = self.deflection(&unit);
         shapes.iter_mut().flatten().for_each(|value| *value *= amplitude);
         shapes
+    }
+
+    /// Their slopes along the radius, kg^(-1/2)/m. Shape (modes, radii).
+    pub(super) fn slopes(&self, plate: &Plate, radii: &[f64]) -> Vec<Vec<f64>> {
+        let unit: Vec<f64> = radii.iter().map(|r| r / plate.radius).collect();
+        let amplitude = Self::amplitude(plate) / plate.radius;
+        let mut slopes = self.derivative(1, &unit);
+        slopes.iter_mut().flatten().for_each(|value| *value *= amplitude);
+        slopes
     }
 
     /// Amplitude of a mass-normalised mode of `plate` per that of the unit plate.

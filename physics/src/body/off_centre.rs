@@ -13,15 +13,26 @@ const EDGE: f64 = 6.0;
 /// Points of the quadrature over the waves left out.
 const QUADRATURE: usize = 64;
 
+/// Modes of a plate that is struck beside its centre.
+#[derive(Debug, Clone)]
+pub struct OffCentreModes {
+    /// The inner body faces the centre, which modes with nodal diameters leave at rest.
+    pub body: ModalBody,
+    /// Displacements of the faces along x, in which direction the outer body strikes beside the centre, at the outer and the inner contact:
+    /// the plate's normal turns. kg^(-1/2). Shape (n, 2).
+    pub along: Vec<[f64; 2]>,
+}
+
 /// The lowest `modes` modes of `plate`, clamped or simply supported, that move the point at `offset` in m from its centre, where the
-/// outer body strikes; the inner one faces the centre, which modes with nodal diameters leave at rest.
+/// outer body strikes.
 ///
 /// # Errors
 /// As [`UnitPlate::new`].
-pub fn modes(plate: &Plate, offset: f64, modes: usize) -> Result<ModalBody> {
+pub fn modes(plate: &Plate, offset: f64, modes: usize) -> Result<OffCentreModes> {
     // x^2/8 modes lie below the wave number x if it is large (Weyl), fewer by the edge
     let highest = (8.0 * modes as f64).sqrt() + EDGE;
-    let mut found: Vec<(f64, [f64; 2])> = Vec::new();
+    let half = 0.5 * plate.thickness;
+    let mut found: Vec<(f64, [f64; 2], [f64; 2])> = Vec::new();
     for diameters in 0..=highest as usize {
         // zeros of Bessel functions of the order n begin above n and are pi apart at least
         let count = ((highest - diameters as f64) / PI) as usize + 2;
@@ -29,19 +40,23 @@ pub fn modes(plate: &Plate, offset: f64, modes: usize) -> Result<ModalBody> {
         let body = unit.scale(plate);
         let both = body.participation.iter().zip(unit.shapes(plate, &[offset]));
         let both = both.map(|(centre, struck)| [struck[0], centre[1]]);
+        // the outer face is above the middle plane, the inner one below
+        let slopes = unit.slopes(plate, &[offset, 0.0]);
+        let along = slopes.iter().map(|slope| [-half * slope[0], half * slope[1]]);
         let below = unit.frequency(plate) * highest.powi(2);
-        found.extend(body.omega.into_iter().zip(both).filter(|(omega, _)| *omega <= below));
+        let each = body.omega.into_iter().zip(both).zip(along);
+        found.extend(each.map(|((omega, both), along)| (omega, both, along)).filter(|mode| mode.0 <= below));
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     debug_assert!(found.len() >= modes);
     found.truncate(modes);
-    let (omega, participation): (Vec<f64>, Vec<[f64; 2]>) = found.into_iter().unzip();
-    Ok(ModalBody {
-        damping_ratio: vec![plate.damping_ratio; omega.len()],
-        omega,
-        participation,
+    let body = ModalBody {
+        damping_ratio: vec![plate.damping_ratio; modes],
+        omega: found.iter().map(|mode| mode.0).collect(),
+        participation: found.iter().map(|mode| mode.1).collect(),
         residual: None,
-    })
+    };
+    Ok(OffCentreModes { body, along: found.iter().map(|mode| mode.2).collect() })
 }
 
 /// Static flexibility in m/N of the modes of `plate` beyond the angular frequency `omega` in rad/s: at the point `offset` m from the centre,
@@ -82,7 +97,7 @@ mod tests {
             (Edge::SimplySupported, [4.9351, 13.898, 25.613, 29.720, 39.957, 48.479, 56.842, 70.117, 74.156]),
         ] {
             let plate = plate(edge);
-            let found = modes(&plate, 0.01, table.len()).expect("modes");
+            let found = modes(&plate, 0.01, table.len()).expect("modes").body;
             let unit = UnitPlate::new(edge, 0.3, 1).expect("a mode").frequency(&plate);
             for (omega, expected) in found.omega.iter().zip(table) {
                 assert_relative_eq!(omega / unit, expected, max_relative = 3e-4);
@@ -98,7 +113,7 @@ mod tests {
         let plate = plate(Edge::Clamped);
         let stiffness = plate.material.youngs_modulus * plate.thickness.powi(3) / (12.0 * (1.0 - 0.09));
         for c in [0.2, 0.5] {
-            let body = modes(&plate, c * plate.radius, 600).expect("modes");
+            let body = modes(&plate, c * plate.radius, 600).expect("modes").body;
             let sum = |i: usize, j: usize| -> f64 {
                 let each = body.omega.iter().zip(&body.participation);
                 each.map(|(omega, phi)| phi[i] * phi[j] / omega.powi(2)).sum()
@@ -109,6 +124,27 @@ mod tests {
         }
     }
 
+    /// Slopes at both contacts under a force beside the centre, from Michell's solution (Timoshenko & Woinowsky-Krieger, section 64):
+    /// at x on the line of the force at c, ((1 - x^2)(1 - c^2) + (x - c)^2 ln((x - c)^2/(1 - x c)^2)) P R^2/(16 pi D).
+    #[test]
+    fn the_faces_move_along_x_where_the_plate_s_normal_turns() {
+        let plate = plate(Edge::Clamped);
+        let stiffness = plate.material.youngs_modulus * plate.thickness.powi(3) / (12.0 * (1.0 - 0.09));
+        let half = 0.5 * plate.thickness;
+        for c in [0.2_f64, 0.5] {
+            let OffCentreModes { body, along } = modes(&plate, c * plate.radius, 600).expect("modes");
+            let moved = |i: usize| -> f64 {
+                let each = body.omega.iter().zip(&body.participation).zip(&along);
+                each.map(|((omega, phi), along)| phi[0] * along[i] / omega.powi(2)).sum()
+            };
+            let unit = plate.radius / (16.0 * PI * stiffness);
+            let at_force = -2.0 * c * (1.0 - c * c) * unit;
+            let at_centre = (2.0 * c * (c * c - 1.0) - 4.0 * c * c.ln()) * unit;
+            assert_relative_eq!(moved(0), -half * at_force, max_relative = 4e-3);
+            assert_relative_eq!(moved(1), half * at_centre, max_relative = 4e-3);
+        }
+    }
+
     /// Few modes and what the waves beyond them yield, against the same closed forms.
     #[test]
     fn modes_and_the_waves_beyond_them_have_the_compliance_of_all_modes() {
@@ -116,7 +152,7 @@ mod tests {
         let unit = plate.radius.powi(2)
             / (16.0 * PI * rigidity(plate.material.youngs_modulus, 0.3, plate.thickness));
         for c in [0.015_f64, 0.2, 0.5] {
-            let body = modes(&plate, c * plate.radius, 150).expect("modes");
+            let body = modes(&plate, c * plate.radius, 150).expect("modes").body;
             let rest = flexibility_beyond(&plate, c * plate.radius, body.omega[149]);
             let sum = |i: usize, j: usize| -> f64 {
                 let each = body.omega.iter().zip(&body.participation);

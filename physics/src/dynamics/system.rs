@@ -75,6 +75,9 @@ pub struct System {
     pub approach: [Vec<f64>; 2],
     /// Displacement along z of the plate's centre (mean of both faces) per unit of each coordinate. Shape (n).
     pub centre: Vec<f64>,
+    /// Displacement along x of what is struck at both contacts, along its surface, per unit of each elastic mode's coordinate; none where the
+    /// surfaces of the struck body are taken as moving along their normals alone. Shape (modes, 2) or (0).
+    pub along: Vec<[f64; 2]>,
     /// What the local deformation adds to it.
     pub local_centre: LocalCentre,
     /// Initial gap of each contact in m.
@@ -163,6 +166,7 @@ impl System {
             bodies: [each(|c| c.bodies[0]), each(|c| c.bodies[1])],
             start: [each(|c| c.start[0]), each(|c| c.start[1])],
             centre: each(|c| c.centre),
+            along: Vec::new(),
             gap: [outer.clearance, inner.clearance],
             laws,
             local_centre,
@@ -231,6 +235,7 @@ impl System {
         };
         let mut system = self.softer([flexibility(0, 0), flexibility(0, 1), flexibility(1, 1)]);
         system.modes -= gone.len();
+        system.along.truncate(system.modes);
         system.oscillators.drain(gone.clone());
         let pairs = [&mut system.start, &mut system.approach, &mut system.bodies];
         for coordinates in pairs.into_iter().flatten().chain([&mut system.centre]) {

@@ -3,40 +3,53 @@
 use crate::contact::{Hertz, TangentialContact};
 use crate::dynamics::StopReason;
 use crate::dynamics::integration::{Integration, Options};
-use crate::dynamics::sliding::{Slid, Sliding, TurningBody};
+use crate::dynamics::sliding::{Slid, Sliding, SurfaceMode, TurningBody};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::kinds::impacts::SAMPLES_PER_CONTACT;
 use crate::material::Material;
+use crate::numerics::duhamel::Oscillator;
 use crate::result::Sideways;
 use crate::scene::{Inner, Outer, Plate, Shape, Turning};
 
+/// Velocity across the surfaces by forces along them, over the speed, from which on there is a warning.
+const NOTABLE_ACROSS: f64 = 0.01;
+
 /// What the outer body strikes, as far as that moves along its surface.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) enum StruckSurface {
     /// The inner body.
     OtherBody,
-    /// A wall or a plate that is held.
-    Held,
-    /// A free plate.
-    Free {
-        /// Mass in kg.
-        mass: f64,
-        /// Moment of inertia about a diameter, kg m^2.
-        inertia: f64,
-        /// Distance of its middle from the contacts, m.
-        arm: f64,
-    },
+    /// What moves in these modes; a wall in none.
+    Moving(Vec<SurfaceMode>),
 }
 
 impl StruckSurface {
-    /// Of a plate.
-    pub(super) fn plate(plate: &Plate) -> Self {
-        if plate.edge != crate::scene::Edge::Free {
-            return Self::Held;
+    /// Of a plate in `system`, struck at `offset` m from its centre.
+    pub(super) fn plate(plate: &Plate, offset: f64, system: &System) -> Self {
+        let mut rigid = Vec::new();
+        if plate.edge == crate::scene::Edge::Free {
+            let (mass, arm) = (plate.mass(), 0.5 * plate.thickness);
+            let inertia = mass * (0.25 * plate.radius.powi(2) + arm * arm / 3.0);
+            let free = Oscillator { omega: 0.0, alpha: 0.0 };
+            let (push, turn) = (mass.sqrt().recip(), inertia.sqrt().recip());
+            // along x, and about y: the outer face moves towards +x
+            rigid.push(SurfaceMode { oscillator: free, approach: [0.0; 2], along: [push; 2] });
+            let along = [arm * turn, -arm * turn];
+            rigid.push(SurfaceMode { oscillator: free, approach: [-offset * turn, 0.0], along });
         }
-        let (mass, arm) = (plate.mass(), 0.5 * plate.thickness);
-        Self::Free { mass, arm, inertia: mass * (0.25 * plate.radius.powi(2) + arm * arm / 3.0) }
+        Self::elastic(rigid, system)
+    }
+
+    /// Of an elastic body in `system` with these `rigid` motions.
+    pub(super) fn elastic(rigid: Vec<SurfaceMode>, system: &System) -> Self {
+        let mut modes = rigid;
+        modes.extend(system.along.iter().zip(system.elastic()).map(|(along, k)| SurfaceMode {
+            oscillator: system.oscillators[k],
+            approach: [system.approach[0][k], system.approach[1][k]],
+            along: *along,
+        }));
+        Self::Moving(modes)
     }
 }
 
@@ -54,9 +67,21 @@ pub(super) struct Rubbed {
     pub(super) sideways: Sideways,
     /// In both contacts, J; `None` without friction.
     pub(super) dissipated: Option<[f64; 2]>,
+    /// See [`Slid::across`], over the speed of the outer body.
+    across: f64,
 }
 
 impl Rubbed {
+    /// What the user has to know of the motion across the surfaces that friction causes.
+    pub(super) fn warning(&self) -> Option<String> {
+        (self.across > NOTABLE_ACROSS).then(|| {
+            format!(
+                "friction bends or turns what is struck, which moves the contacts across the surfaces at up to {:.1} % of the speed; the models omit that",
+                100.0 * self.across
+            )
+        })
+    }
+
     /// Energy that friction dissipates, J; `None` without friction.
     pub(super) fn friction_work(&self) -> Option<f64> {
         self.dissipated.map(|dissipated| dissipated.iter().sum())
@@ -76,7 +101,10 @@ fn turning_body(shape: &Shape, material: &Material, turning: &Turning) -> Option
 
 /// Whether bodies move along the surfaces they meet, or turn.
 pub(super) fn moves_along(outer: &Outer, inner: Option<&Inner>) -> bool {
-    outer.angle != 0.0 || outer.turning.spin != 0.0 || inner.is_some_and(|inner| inner.turning.spin != 0.0)
+    let rubs = outer.turning.friction > 0.0 || inner.is_some_and(|inner| inner.turning.friction > 0.0);
+    let spins = outer.turning.spin != 0.0 || inner.is_some_and(|inner| inner.turning.spin != 0.0);
+    // beside the centre a plate's normal turns
+    outer.angle != 0.0 || spins || outer.offset != 0.0 && rubs
 }
 
 impl Rubbing<'_> {
@@ -128,6 +156,7 @@ impl Rubbing<'_> {
                 inner_spin_final: self.inner.map(|_| spins[1] + pushed * per_inertia(inner)),
             },
             dissipated: slid.map(|slid| slid.dissipated),
+            across: slid.map_or(0.0, |slid| slid.across / self.outer.speed),
         }))
     }
 
@@ -144,22 +173,20 @@ impl Rubbing<'_> {
         let arms = bodies.map(|body| body.map_or(0.0, |body| body.arm));
         let surfaces = [along - spins[0] * arms[0], spins[1] * arms[1]];
         let [first, second] = mobilities;
-        let (mobility, velocity) = match self.struck {
-            StruckSurface::OtherBody => ([[first + second, 0.0], [0.0; 2]], [surfaces[0] - surfaces[1], 0.0]),
-            StruckSurface::Held => ([[first, 0.0], [0.0, second]], surfaces),
-            StruckSurface::Free { mass, inertia, arm } => {
-                let (push, turn) = (1.0 / mass, arm * arm / inertia);
-                ([[first + push + turn, push - turn], [push - turn, second + push + turn]], surfaces)
+        let (mobility, velocity, modes) = match &self.struck {
+            StruckSurface::OtherBody => {
+                ([[first + second, 0.0], [0.0; 2]], [surfaces[0] - surfaces[1], 0.0], &[][..])
             }
+            StruckSurface::Moving(modes) => ([[first, 0.0], [0.0, second]], surfaces, &modes[..]),
         };
         let frictions = self.frictions();
         let contact = |i: usize| {
             let (law, materials) = self.contacts[i];
             let peak = result.contacts[i].force_peak;
             // surfaces that do not move along each other stay so, unless a plate between moves them
-            let moves = velocity[i] != 0.0 || matches!(self.struck, StruckSurface::Free { .. });
+            let moves = velocity[i] != 0.0 || !modes.is_empty();
             (moves && peak > 0.0).then(|| TangentialContact::new(law, materials, frictions[i], peak))
         };
-        Sliding { contacts: [contact(0), contact(1)], mobility, velocity }.slide(history)
+        Sliding { contacts: [contact(0), contact(1)], mobility, modes, velocity }.slide(history)
     }
 }

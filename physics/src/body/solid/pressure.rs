@@ -9,6 +9,9 @@ const PIECES: f64 = 24.0;
 /// Least cosine between the normals of the circle and of a face that it lies on.
 const FACING: f64 = 0.3;
 
+/// Sine of the angle between normal and x axis below which the normal counts as x.
+const ACROSS: f64 = 1e-3;
+
 /// Place and outward normal of length 1 at which another body presses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfacePoint {
@@ -16,6 +19,15 @@ pub struct SurfacePoint {
     pub point: Vector3<f64>,
     /// Of length 1.
     pub normal: Vector3<f64>,
+}
+
+impl SurfacePoint {
+    /// The direction along the surface nearest to +x; to +y where the normal is x. Of length 1.
+    pub fn along(&self) -> Vector3<f64> {
+        let within = |axis: Vector3<f64>| axis - self.normal * self.normal.dot(&axis);
+        let along = within(Vector3::x());
+        if along.norm() > ACROSS { along.normalize() } else { within(Vector3::y()).normalize() }
+    }
 }
 
 /// A unit force along the normal, spread as 3/(2 pi b^2) sqrt(1 - (r/b)^2) over a circle of the radius b (Johnson, Contact Mechanics, 1985,

@@ -56,8 +56,12 @@ pub struct StruckSolid {
     pub omega: Vec<f64>,
     /// Displacements along the normals in kg^(-1/2), by contact and circle; zero for a contact that is not there. Shape (n, 2, 3).
     pub participation: Vec<[[f64; 3]; 2]>,
-    /// The same of rigid motions, of which the contacts see two at most. Shape (r, 2).
+    /// Displacements along the surface in the direction [`SurfacePoint::along`], kg^(-1/2). Shape (n, 2).
+    pub along: Vec<[f64; 2]>,
+    /// Displacements along the normals of rigid motions, of which the contacts see two at most. Shape (r, 2).
     pub rigid: Vec<[f64; 2]>,
+    /// Displacements of all rigid motions: along the normals, and along the surface. Shape (6, 2, 2), none of a held body.
+    pub rigid_motions: Vec<[[f64; 2]; 2]>,
     /// Displacement of each contact by its own unit force in m/N, by circle; of a free body what it deforms. Shape (2, 3).
     pub own: [[f64; 3]; 2],
     /// Displacement of contact 0 by a unit force at contact 1 in m/N. Shape (circles of 0, circles of 1).
@@ -125,10 +129,13 @@ impl StruckSolid {
         }
         let force = |k: usize, m: usize| statics.force(&loads[k][m], points[k].at.normal);
         let seen = |k: usize, m: usize, u: &[f64]| statics.seen(&loads[k][m], points[k].at.normal, u);
+        let seen_along = |k: usize, u: &[f64]| statics.seen(&loads[k][MIDDLE], points[k].at.along(), u);
         let mut body = Self {
             omega: Vec::new(),
             participation: Vec::new(),
+            along: Vec::new(),
             rigid: seen_rigid(&statics.rigid, points.len(), |k, motion| seen(k, MIDDLE, motion)),
+            rigid_motions: Vec::new(),
             own: [[0.0; 3]; 2],
             mutual: [[0.0; 3]; 3],
             circles: [0, 1].map(|k| points.get(k).map_or([0.0; 3], |struck| struck.circles)),
@@ -160,14 +167,19 @@ impl StruckSolid {
                 [of(0), of(1)]
             })
             .collect();
+        let at_contacts =
+            |of: &dyn Fn(usize) -> f64| [0, 1].map(|k| if k < points.len() { of(k) } else { 0.0 });
+        let along = |shape: &Vec<f64>| at_contacts(&|k| seen_along(k, shape));
+        body.along = shapes.iter().map(along).collect();
+        let rigid = |motion: &Vec<f64>| [at_contacts(&|k| seen(k, MIDDLE, motion)), along(motion)];
+        body.rigid_motions = statics.rigid.iter().map(rigid).collect();
         Ok(body)
     }
 
     /// The lowest frequency in Hz that the contacts excite, the first material being `material`; infinite if there is none.
     pub fn first_frequency(&self, material: &Material) -> f64 {
-        let moved = |k: usize| {
-            self.participation[k].iter().map(|circles| circles[MIDDLE].abs()).fold(0.0, f64::max)
-        };
+        let moved =
+            |k: usize| self.participation[k].iter().map(|circles| circles[MIDDLE].abs()).fold(0.0, f64::max);
         let excited = (0..self.omega.len()).find(|k| moved(*k) * self.mass.sqrt() > EXCITED);
         let omega = excited.map_or(f64::INFINITY, |k| self.omega[k]);
         omega * (material.youngs_modulus / material.density).sqrt() / (2.0 * std::f64::consts::PI)
@@ -180,7 +192,10 @@ impl StruckSolid {
         let mut body = self.clone();
         body.omega.iter_mut().for_each(|omega| *omega *= (stiffer / heavier).sqrt());
         let participations = body.participation.iter_mut().flatten().flatten();
-        participations.chain(body.rigid.iter_mut().flatten()).for_each(|value| *value /= heavier.sqrt());
+        let motions = body.rigid_motions.iter_mut().flatten();
+        let pairs = body.rigid.iter_mut().chain(&mut body.along).chain(motions);
+        let participations = participations.chain(pairs.flatten());
+        participations.for_each(|value| *value /= heavier.sqrt());
         let flexibilities = body.own.iter_mut().flatten().chain(body.mutual.iter_mut().flatten());
         flexibilities.for_each(|value| *value /= stiffer);
         body.mass *= heavier;
@@ -258,11 +273,11 @@ impl Statics {
         force
     }
 
-    /// Displacement along `normal` of what is `pressed`.
-    fn seen(&self, pressed: &HertzLoad, normal: Vector3<f64>, u: &[f64]) -> f64 {
+    /// Displacement of what is `pressed` in a `direction`.
+    fn seen(&self, pressed: &HertzLoad, direction: Vector3<f64>, u: &[f64]) -> f64 {
         let at = |node: usize| -> f64 {
             let free = self.dof[node].iter().enumerate().filter(|(_, dof)| **dof != FIXED);
-            free.map(|(c, &dof)| normal[c] * u[dof]).sum()
+            free.map(|(c, &dof)| direction[c] * u[dof]).sum()
         };
         pressed.nodes.iter().map(|(node, share)| share * at(*node)).sum()
     }

@@ -9,9 +9,11 @@ use crate::body::continuum::{MeshOptions, cached};
 use crate::body::free_sphere::sphere_residual;
 use crate::contact::Hertz;
 use crate::dynamics::MovingBody;
+use crate::dynamics::sliding::SurfaceMode;
 use crate::dynamics::system::{PLATE, System};
 use crate::error::Result;
 use crate::kinds::plate_impact;
+use crate::numerics::duhamel::Oscillator;
 use crate::result::limit::SMALL_DEFLECTION;
 use crate::scene::{DEFAULT_MODES, Edge, Inner, Material, Outer, Plate, Shape};
 use nalgebra::Vector3;
@@ -29,6 +31,8 @@ pub(super) struct Between {
     pub(super) fewer: usize,
     /// Mass in kg; `None` if the body is held.
     free_mass: Option<f64>,
+    /// Its rigid motions, those along the surfaces too; none of a plate, which is struck at its centre.
+    pub(super) rigid: Vec<SurfaceMode>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -80,7 +84,15 @@ impl Between {
             System { first_frequency, ..system }
         };
         let (own, other) = elastic.modal(body, patch);
-        let system = join(own);
+        let solid = elastic.own.of_material(body.materials.named(None));
+        let free = Oscillator { omega: 0.0, alpha: 0.0 };
+        let rigid = solid.rigid_motions.iter().map(|[approach, along]| SurfaceMode {
+            oscillator: free,
+            approach: *approach,
+            along: *along,
+        });
+        let rigid = rigid.collect();
+        let system = System { along: solid.along, ..join(own) };
         let normals: Vec<Vector3<f64>> = elastic.contacts.iter().map(|c| Vector3::from(c.normal)).collect();
         let mut warnings = elastic.warnings.clone();
         warnings.extend(elastic.patch_warnings(patch));
@@ -92,8 +104,8 @@ impl Between {
         let between = Self {
             other: other.map(|other| other.map(join)),
             alignment: normals.get(1).map_or(0.0, |inner| -normals[0].dot(inner)),
-            free_mass: (!elastic.own.rigid.is_empty())
-                .then_some(body.materials.named(None).density * elastic.own.mass),
+            free_mass: (!elastic.own.rigid.is_empty()).then_some(solid.mass),
+            rigid,
             fewer: 2 * DROPPED * elastic.contacts.len(),
             warnings,
         };
@@ -130,6 +142,7 @@ impl Between {
             alignment: 0.0,
             fewer: system.modes / 2,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
+            rigid: Vec::new(),
             warnings,
         };
         Ok((system, between))

@@ -5,7 +5,6 @@ use crate::kinds::consistency::{
     ENERGY_SLACK, FORCE_FLOOR, SLACK, Stated, VELOCITY_SLACK, contact, displacement_balance,
     momentum_balance, not_negative, peak,
 };
-use crate::kinds::rubbing::moves_along;
 use crate::result::{History, Outcome, Statement, Summary, Table};
 
 /// The bodies that have a contact of their own, as names begin.
@@ -135,7 +134,7 @@ pub(super) fn shown(setup: &GeneralImpact, history: &History) -> Table {
     let efficiency =
         |(inner, velocity): (f64, f64)| inner * velocity.powi(2) / (mass * setup.outer.speed.powi(2));
     // the motion along the surfaces is no curve
-    let is_known = !setup.outer.shape.is_mounted() && !moves_along(&setup.outer, setup.inner.as_ref());
+    let is_known = !setup.outer.shape.is_mounted() && !setup.moves_along();
     set("efficiency".into(), setup.inner_mass().zip(inner).filter(|_| is_known).map(efficiency));
     table
 }

@@ -16,7 +16,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, integrate};
 use crate::error::{Error, Result};
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
-use crate::kinds::rubbing::{Rubbed, moves_along};
+use crate::kinds::rubbing::Rubbed;
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::Material;
 use crate::numerics::stopwatch::Stopwatch;
@@ -263,13 +263,13 @@ impl ContactModel {
             "the law of plastic contacts takes the inner body's tip as flat and the outer one's as more curved instead".into()
         }));
         let rubbed = self.rubbed(result)?;
+        warnings.extend(rubbed.as_ref().and_then(Rubbed::warning));
         let table = self.of_all_motion(self.table(result), rubbed.as_ref());
-        if moves_along(&self.scene.general_impact()?.outer, self.setup.inner.as_ref())
-            && self.rubbing()?.is_none()
-        {
+        let is_omitted = self.rubbing()?.is_none();
+        if is_omitted && self.scene.general_impact()?.moves_along() {
             warnings.push("motion along the surfaces is omitted by the reduced model".into());
         }
-        if self.setup.rubs() && (self.memory.is_some() || self.setup.body().is_some()) {
+        if is_omitted && self.setup.rubs() && (self.memory.is_some() || self.setup.body().is_some()) {
             warnings.push(
                 "friction along the surfaces is omitted by the reduced model: it only stiffens the contact of unlike materials".into(),
             );

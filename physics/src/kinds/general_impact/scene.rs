@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::kinds::body_keys::{CONTACT_ELEMENTS, INNER, OUTER, SERIES};
 use crate::kinds::body_reading;
 use crate::kinds::plate_impact::{PLATE, read_plate};
+use crate::kinds::rubbing::moves_along;
 use crate::material::Material;
 use crate::scene::collision::Collision;
 use crate::scene::grammar::{
@@ -103,6 +104,12 @@ impl GeneralImpact {
     pub fn has_inertia(&self) -> bool {
         let inner = self.inner.as_ref().map(|inner| inner.turning.has_inertia(&inner.shape));
         self.outer.turning.has_inertia(&self.outer.shape) && inner.unwrap_or(true)
+    }
+
+    /// Whether bodies move along the surfaces they meet, or turn: an elastic body's surface does not move along its normal alone.
+    pub fn moves_along(&self) -> bool {
+        moves_along(&self.outer, self.inner.as_ref())
+            || self.body().is_some() && self.rubs() && self.has_inertia()
     }
 
     /// Whether a body rubs on what it touches.

@@ -7,7 +7,7 @@ use super::validity;
 use crate::body::ModalBody;
 use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
 use crate::body::kirchhoff::UnitPlates;
-use crate::body::off_centre;
+use crate::body::off_centre::{self, OffCentreModes};
 use crate::dynamics::MovingBody;
 use crate::dynamics::memory::{Bending, Memory};
 use crate::dynamics::system::{PLATE, System};
@@ -80,9 +80,10 @@ pub(super) fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitP
 
 /// Models A and B with `modes` modes of a plate that is struck beside its centre.
 pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize) -> Result<System> {
-    let plate = off_centre::modes(&setup.plate, setup.outer.offset, modes)?;
-    let centre: Vec<f64> = plate.participation.iter().map(|phi| phi[1]).collect();
-    let mut system = join(setup, plate, [0.0; 2])?;
+    let OffCentreModes { body, along } = off_centre::modes(&setup.plate, setup.outer.offset, modes)?;
+    let centre: Vec<f64> = body.participation.iter().map(|phi| phi[1]).collect();
+    let mut system = join(setup, body, [0.0; 2])?;
+    system.along = along;
     // the plate is observed at its centre, not at the mean of both contacts
     system.centre[PLATE..].copy_from_slice(&centre);
     Ok(system)

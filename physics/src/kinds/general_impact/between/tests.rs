@@ -102,12 +102,17 @@ fn a_free_block_is_a_half_space_that_moves() {
 #[test]
 fn a_free_block_that_is_struck_beside_its_middle_turns() {
     let size = [20e-3, 20e-3, 20e-3];
-    let (system, ..) = struck(size, [10, 10, 4], [4e-3, 0.0], [2e-3, 0.1], (false, |_, _| false));
+    let (system, between, _) = struck(size, [10, 10, 4], [4e-3, 0.0], [2e-3, 0.1], (false, |_, _| false));
     let block = STEEL[2] * size.iter().product::<f64>();
     let inertia = block * (size[0] * size[0] + size[2] * size[2]) / 12.0;
     let mobility: f64 = system.rigid().map(|k| system.approach[0][k].powi(2)).sum();
     // the pressure's own width adds a little to the arm: d^2 over the circle, in the middle d^2 itself
     assert_relative_eq!(mobility, 1.0 / block + 4e-3f64.powi(2) / inertia, max_relative = 1e-3);
+    // the same along x, on the arm of half the height; and what a force along x moves across the face
+    let along: f64 = between.rigid.iter().map(|motion| motion.along[0].powi(2)).sum();
+    assert_relative_eq!(along, 1.0 / block + 10e-3f64.powi(2) / inertia, max_relative = 1e-3);
+    let across: f64 = between.rigid.iter().map(|motion| motion.along[0] * motion.approach[0]).sum();
+    assert_relative_eq!(across, -4e-3 * 10e-3 / inertia, max_relative = 1e-3);
 }
 
 /// A sphere against the end of a long rod, until the echo: m s'' = -F, d' = s' - F/(rho c A), F = k d^(3/2) with the bar's wave speed c.
@@ -175,6 +180,11 @@ fn a_cantilever_bends_as_timoshenkos_beam() {
         system.elastic().map(|k| (system.approach[0][k] / system.oscillators[k].omega).powi(2)).sum();
     let local = system.residual.expect("a residual").displacement(&system.laws, [1.0, 0.0], [1e-9, 0.0]).0[0];
     assert_relative_eq!(modes + local, expected, max_relative = 0.01);
+    // the face turns with the beam's axis
+    let each = system.elastic().zip(&system.along);
+    let moved: f64 =
+        each.map(|(k, along)| system.approach[0][k] * along[0] / system.oscillators[k].omega.powi(2)).sum();
+    assert_relative_eq!(moved, -0.5 * height * arm.powi(2) / (2.0 * e * inertia), max_relative = 0.01);
 }
 
 /// A body whose supports leave a motion is refused.

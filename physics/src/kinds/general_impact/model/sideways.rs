@@ -4,7 +4,7 @@ use super::ContactModel;
 use crate::dynamics::integration::{Integration, Options};
 use crate::error::Result;
 use crate::kinds::general_impact::{GeneralImpact, Struck};
-use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, moves_along};
+use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface};
 use crate::result::Table;
 
 impl ContactModel {
@@ -26,20 +26,25 @@ impl ContactModel {
         Ok(self.rubbing()?.map_or(options, |rubbing| rubbing.keeping_forces(&self.system, options)))
     }
 
-    /// The bodies, if they move along the surfaces as the model has it: elastic ones on a wall, a plate, or each other.
+    /// The bodies, if they move along the surfaces as the model has it: without materials that yield or relax.
     pub(super) fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
-        let GeneralImpact { outer, inner, struck, .. } = self.scene.general_impact()?;
+        let scene = self.scene.general_impact()?;
+        let GeneralImpact { outer, inner, struck, .. } = scene;
         let surface = match struck {
-            Some(Struck::Body(_)) => return Ok(None),
-            Some(Struck::Plate(plate)) => StruckSurface::plate(plate),
-            Some(Struck::Wall(_)) => StruckSurface::Held,
+            Some(Struck::Body(_)) => {
+                let rigid = self.between.as_ref().map_or_else(Vec::new, |between| between.rigid.clone());
+                StruckSurface::elastic(rigid, &self.system)
+            }
+            Some(Struck::Plate(plate)) => StruckSurface::plate(plate, 0.0, &self.system),
+            Some(Struck::Wall(_)) => StruckSurface::Moving(Vec::new()),
             None => StruckSurface::OtherBody,
         };
-        if self.memory.is_some() || !moves_along(outer, inner.as_ref()) {
+        if self.memory.is_some() || !scene.moves_along() {
             return Ok(None);
         }
-        let law = self.system.laws[0];
-        let contacts = [(law, [&outer.material, &self.faces[0]]); 2];
+        let laws = self.system.laws;
+        let behind = inner.as_ref().map_or(&outer.material, |inner| &inner.material);
+        let contacts = [(laws[0], [&outer.material, &self.faces[0]]), (laws[1], [behind, &self.faces[1]])];
         Ok(Some(Rubbing { outer, inner: inner.as_ref(), struck: surface, contacts }))
     }
 

@@ -92,18 +92,18 @@ impl Reduced {
         Ok(self.rubbing()?.map_or(options, |rubbing| rubbing.keeping_forces(&self.system, options)))
     }
 
-    /// The bodies, if they move along the plate as the models have it: at its centre.
+    /// The bodies, if they move along the plate.
     fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
         let setup = self.scene.plate_impact()?;
         let PlateImpact { outer, inner, plate, .. } = setup;
-        if outer.offset != 0.0 || !moves_along(outer, Some(inner)) {
+        if !moves_along(outer, Some(inner)) {
             return Ok(None);
         }
         let laws = self.system.laws;
         Ok(Some(Rubbing {
             outer,
             inner: Some(inner),
-            struck: StruckSurface::plate(plate),
+            struck: StruckSurface::plate(plate, outer.offset, &self.system),
             contacts: [
                 (laws[0], [&outer.material, &plate.material]),
                 (laws[1], [&inner.material, &plate.material]),
@@ -314,7 +314,8 @@ impl Reduced {
             format!("the plate's mesh changes forces or efficiency by about {:.1} %", 100.0 * error)
         }));
         let rubbed = self.rubbed(result)?;
-        if setup.rubs() && (setup.outer.offset != 0.0 || self.memory.is_some()) {
+        warnings.extend(rubbed.as_ref().and_then(Rubbed::warning));
+        if setup.rubs() && self.memory.is_some() {
             warnings.push(
                 "friction along the plate is omitted by the reduced models: it only stiffens the contact of unlike materials".into(),
             );
