@@ -179,7 +179,7 @@ impl UnitPlates {
     /// # Errors
     /// As [`UnitPlate::new`].
     pub fn modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
-        Ok(self.unit(plate.edge, plate.material.poisson_ratio, modes)?.scale(plate))
+        Ok(self.unit(plate.edge, plate.material.poisson_ratio, modes, 0)?.scale(plate))
     }
 
     /// As [`Self::modes`], of a plate whose Poisson's ratio may be another by 0.05 in its edge's moments, not in its rigidity.
@@ -188,7 +188,7 @@ impl UnitPlates {
     /// As [`UnitPlate::new`].
     pub(crate) fn initial_modes(&self, plate: &Plate, modes: usize) -> Result<ModalBody> {
         let poisson_ratio = (10.0 * plate.material.poisson_ratio).round().min(4.0) / 10.0;
-        Ok(self.unit(plate.edge, poisson_ratio, modes)?.scale(plate))
+        Ok(self.unit(plate.edge, poisson_ratio, modes, 0)?.scale(plate))
     }
 
     /// Mass-normalised deflections of `plate` at `radii` in m in its lowest `modes` elastic modes (and before them in the
@@ -197,17 +197,30 @@ impl UnitPlates {
     /// # Errors
     /// As [`UnitPlate::new`].
     pub fn shapes(&self, plate: &Plate, modes: usize, radii: &[f64]) -> Result<Vec<Vec<f64>>> {
-        Ok(self.unit(plate.edge, plate.material.poisson_ratio, modes)?.shapes(plate, radii))
+        Ok(self.unit(plate.edge, plate.material.poisson_ratio, modes, 0)?.shapes(plate, radii))
     }
 
-    fn unit(&self, edge: Edge, poisson_ratio: f64, modes: usize) -> Result<Arc<UnitPlate>> {
+    /// The unit plate with this edge and Poisson's ratio and the lowest `modes` elastic modes of so many nodal `diameters`.
+    ///
+    /// # Errors
+    /// As [`UnitPlate::new`].
+    pub(super) fn unit(
+        &self,
+        edge: Edge,
+        poisson_ratio: f64,
+        modes: usize,
+        diameters: usize,
+    ) -> Result<Arc<UnitPlate>> {
         let count = modes + usize::from(edge == Edge::Free);
         // the edge's moments do no work where it is clamped: the modes are those of any Poisson's ratio
         let poisson_ratio = if edge == Edge::Clamped { 0.3 } else { poisson_ratio };
         let fits = |unit: &UnitPlate| {
-            unit.edge == edge && unit.poisson_ratio == poisson_ratio && unit.omega.len() == count
+            unit.edge == edge
+                && unit.poisson_ratio == poisson_ratio
+                && unit.diameters == diameters
+                && unit.omega.len() == count
         };
-        self.0.find_or(fits, || UnitPlate::new(edge, poisson_ratio, modes))
+        self.0.find_or(fits, || UnitPlate::with_diameters(edge, poisson_ratio, modes, diameters))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Thin circular plate (Kirchhoff) that is struck beside its centre: modes with nodal diameters, too.
 
 use super::ModalBody;
-use super::kirchhoff::UnitPlate;
+use super::kirchhoff::UnitPlates;
 use crate::analytical::circular_plate::rigidity;
 use crate::error::Result;
 use crate::numerics::quadrature::gauss_legendre;
@@ -24,11 +24,11 @@ pub struct OffCentreModes {
 }
 
 /// The lowest `modes` modes of `plate`, clamped or simply supported, that move the point at `offset` in m from its centre, where the
-/// outer body strikes.
+/// outer body strikes, from `plates` as far as they are known.
 ///
 /// # Errors
-/// As [`UnitPlate::new`].
-pub fn modes(plate: &Plate, offset: f64, modes: usize) -> Result<OffCentreModes> {
+/// As [`UnitPlates::modes`].
+pub fn modes(plate: &Plate, offset: f64, modes: usize, plates: &UnitPlates) -> Result<OffCentreModes> {
     // x^2/8 modes lie below the wave number x if it is large (Weyl), fewer by the edge
     let highest = (8.0 * modes as f64).sqrt() + EDGE;
     let half = 0.5 * plate.thickness;
@@ -36,7 +36,7 @@ pub fn modes(plate: &Plate, offset: f64, modes: usize) -> Result<OffCentreModes>
     for diameters in 0..=highest as usize {
         // zeros of Bessel functions of the order n begin above n and are pi apart at least
         let count = ((highest - diameters as f64) / PI) as usize + 2;
-        let unit = UnitPlate::with_diameters(plate.edge, plate.material.poisson_ratio, count, diameters)?;
+        let unit = plates.unit(plate.edge, plate.material.poisson_ratio, count, diameters)?;
         let body = unit.scale(plate);
         let both = body.participation.iter().zip(unit.shapes(plate, &[offset]));
         let both = both.map(|(centre, struck)| [struck[0], centre[1]]);
@@ -80,6 +80,7 @@ pub fn flexibility_beyond(plate: &Plate, offset: f64, omega: f64) -> [f64; 3] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::kirchhoff::UnitPlate;
     use super::*;
     use crate::scene::{Edge, Material};
     use approx::assert_relative_eq;
@@ -96,8 +97,8 @@ mod tests {
             (Edge::Clamped, [10.2158, 21.26, 34.88, 39.771, 51.04, 60.82, 69.666, 84.58, 89.104]),
             (Edge::SimplySupported, [4.9351, 13.898, 25.613, 29.720, 39.957, 48.479, 56.842, 70.117, 74.156]),
         ] {
-            let plate = plate(edge);
-            let found = modes(&plate, 0.01, table.len()).expect("modes").body;
+            let (plate, plates) = (plate(edge), UnitPlates::default());
+            let found = modes(&plate, 0.01, table.len(), &plates).expect("modes").body;
             let unit = UnitPlate::new(edge, 0.3, 1).expect("a mode").frequency(&plate);
             for (omega, expected) in found.omega.iter().zip(table) {
                 assert_relative_eq!(omega / unit, expected, max_relative = 3e-4);
@@ -110,10 +111,10 @@ mod tests {
     /// (1 - c^2 + 2 c^2 ln c) P R^2/(16 pi D) (section 19).
     #[test]
     fn all_modes_together_have_the_compliance_of_a_plate_under_an_off_centre_force() {
-        let plate = plate(Edge::Clamped);
+        let (plate, plates) = (plate(Edge::Clamped), UnitPlates::default());
         let stiffness = plate.material.youngs_modulus * plate.thickness.powi(3) / (12.0 * (1.0 - 0.09));
         for c in [0.2, 0.5] {
-            let body = modes(&plate, c * plate.radius, 600).expect("modes").body;
+            let body = modes(&plate, c * plate.radius, 600, &plates).expect("modes").body;
             let sum = |i: usize, j: usize| -> f64 {
                 let each = body.omega.iter().zip(&body.participation);
                 each.map(|(omega, phi)| phi[i] * phi[j] / omega.powi(2)).sum()
@@ -128,11 +129,12 @@ mod tests {
     /// at x on the line of the force at c, ((1 - x^2)(1 - c^2) + (x - c)^2 ln((x - c)^2/(1 - x c)^2)) P R^2/(16 pi D).
     #[test]
     fn the_faces_move_along_x_where_the_plate_s_normal_turns() {
-        let plate = plate(Edge::Clamped);
+        let (plate, plates) = (plate(Edge::Clamped), UnitPlates::default());
         let stiffness = plate.material.youngs_modulus * plate.thickness.powi(3) / (12.0 * (1.0 - 0.09));
         let half = 0.5 * plate.thickness;
         for c in [0.2_f64, 0.5] {
-            let OffCentreModes { body, along } = modes(&plate, c * plate.radius, 600).expect("modes");
+            let OffCentreModes { body, along } =
+                modes(&plate, c * plate.radius, 600, &plates).expect("modes");
             let moved = |i: usize| -> f64 {
                 let each = body.omega.iter().zip(&body.participation).zip(&along);
                 each.map(|((omega, phi), along)| phi[0] * along[i] / omega.powi(2)).sum()
@@ -148,11 +150,11 @@ mod tests {
     /// Few modes and what the waves beyond them yield, against the same closed forms.
     #[test]
     fn modes_and_the_waves_beyond_them_have_the_compliance_of_all_modes() {
-        let plate = plate(Edge::Clamped);
+        let (plate, plates) = (plate(Edge::Clamped), UnitPlates::default());
         let unit = plate.radius.powi(2)
             / (16.0 * PI * rigidity(plate.material.youngs_modulus, 0.3, plate.thickness));
         for c in [0.015_f64, 0.2, 0.5] {
-            let body = modes(&plate, c * plate.radius, 150).expect("modes").body;
+            let body = modes(&plate, c * plate.radius, 150, &plates).expect("modes").body;
             let rest = flexibility_beyond(&plate, c * plate.radius, body.omega[149]);
             let sum = |i: usize, j: usize| -> f64 {
                 let each = body.omega.iter().zip(&body.participation);

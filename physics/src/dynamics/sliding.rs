@@ -3,13 +3,15 @@
 //! The normal motion is solved before: what forces along the surface do to it is left out, which on a flat, symmetric surface is nothing.
 //! Bodies, modes of what is struck and the contacts' tangential flexibility take part.
 
+use super::surface_modes::{MovingSurfaces, SurfaceForces, SurfaceMode};
 use crate::contact::TangentialContact;
 use crate::error::{Error, Result};
-use crate::numerics::duhamel::Oscillator;
 use crate::result::History;
 
 /// Longest step over the inverse angular frequency of the sticking contact.
 const LONGEST: f64 = 0.05;
+/// The same with the modes of what is struck, which would be unstable from 2 on.
+const STABLE: f64 = 0.5;
 
 /// A body that moves along the surface and turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,17 +29,6 @@ impl TurningBody {
     pub fn mobility(&self) -> f64 {
         1.0 / self.mass + self.arm * self.arm / self.inertia
     }
-}
-
-/// A mode of what is struck, whose surfaces it moves: by the forces across them, as where a plate's normal turns, and along them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SurfaceMode {
-    /// How its coordinate vibrates.
-    pub oscillator: Oscillator,
-    /// Approach of outer and inner contact per unit of its coordinate, kg^(-1/2).
-    pub approach: [f64; 2],
-    /// Displacement along x of the surface at outer and inner contact per unit of its coordinate, kg^(-1/2).
-    pub along: [f64; 2],
 }
 
 /// Contacts whose surfaces move along each other.
@@ -76,32 +67,32 @@ impl Sliding<'_> {
         };
         let mut slid = Slid::default();
         let mut velocity = self.velocity;
-        let mut states = vec![[0.0; 2]; self.modes.len()];
-        let mut by_friction = states.clone();
+        let mut surfaces = MovingSurfaces::new(self.modes);
+        let mut by_friction = surfaces.clone();
         for k in 1..history.len() {
             let (from, to) = ([outer[k - 1], inner[k - 1]], [outer[k], inner[k]]);
             let length = history.time[k] - history.time[k - 1];
-            // contacts that are open forget where they were
-            let count = (length * self.frequency(from, to) / LONGEST).ceil().max(1.0);
+            let count = self.steps(from, to, length);
             let h = length / count;
             for step in 1..=count as usize {
                 let share = step as f64 / count;
                 let pressed = |share: f64| [0, 1].map(|i| (from[i] + share * (to[i] - from[i])).max(0.0));
-                let (earlier, normal) = (pressed(share - 1.0 / count), pressed(share));
-                let before = self.forces();
-                self.kick(&mut velocity, before, 0.5 * h);
-                let moved = self.drift(&mut states, (earlier, before), h);
+                let normal = pressed(share);
+                let before = SurfaceForces { across: pressed(share - 1.0 / count), along: self.forces() };
+                self.kick(&mut velocity, before.along, 0.5 * h);
+                surfaces.kick(before, 0.5 * h);
+                let moved = surfaces.drift(h);
                 for (i, contact) in self.contacts.iter_mut().enumerate() {
                     let step = velocity[i] * h - moved[i];
                     contact.iter_mut().for_each(|contact| contact.advance(normal[i], step));
                 }
-                let after = self.forces();
-                self.kick(&mut velocity, after, 0.5 * h);
-                self.kick_modes(&mut states, (normal, after), 0.5 * h);
-                self.drift(&mut by_friction, ([0.0; 2], before), h);
-                self.kick_modes(&mut by_friction, ([0.0; 2], after), 0.5 * h);
-                slid.across = self.across(&by_friction).into_iter().fold(slid.across, f64::max);
-                (0..2).for_each(|i| slid.impulse[i] += 0.5 * h * (before[i] + after[i]));
+                let after = SurfaceForces { across: normal, along: self.forces() };
+                self.kick(&mut velocity, after.along, 0.5 * h);
+                surfaces.kick(after, 0.5 * h);
+                by_friction.kick(SurfaceForces { across: [0.0; 2], ..after }, h);
+                by_friction.drift(h);
+                slid.across = slid.across.max(by_friction.speed_across());
+                (0..2).for_each(|i| slid.impulse[i] += 0.5 * h * (before.along[i] + after.along[i]));
             }
         }
         for (i, contact) in self.contacts.iter().enumerate() {
@@ -114,41 +105,18 @@ impl Sliding<'_> {
         [0, 1].map(|i| self.contacts[i].as_ref().map_or(0.0, |contact| contact.force))
     }
 
-    /// Angular frequency in rad/s of the bodies on contacts that stick.
-    fn frequency(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
+    /// Steps that an interval of that `length` in s takes, for the frequency of the bodies on contacts that stick; modes move freely by
+    /// themselves, and count only as far as the steps have to be stable.
+    fn steps(&self, from: [f64; 2], to: [f64; 2], length: f64) -> f64 {
         let of = |i: usize| {
             let stiffness = self.contacts[i].as_ref()?.sticking_stiffness(from[i].max(to[i]));
             let modes: f64 = self.modes.iter().map(|mode| mode.along[i] * mode.along[i]).sum();
-            Some((stiffness * (self.mobility[i][i] + modes)).sqrt())
+            let accurate = (stiffness * self.mobility[i][i]).sqrt() / LONGEST;
+            let stable = (stiffness * (self.mobility[i][i] + modes)).sqrt() / STABLE;
+            Some(length * accurate.max(stable))
         };
-        (0..2).filter_map(of).fold(0.0, f64::max)
-    }
-
-    /// Moves the modes by `h` s, kicked by the contact forces across and along the surfaces; how far the surfaces move along x, m.
-    fn drift(&self, states: &mut [[f64; 2]], forces: ([f64; 2], [f64; 2]), h: f64) -> [f64; 2] {
-        self.kick_modes(states, forces, 0.5 * h);
-        let mut moved = [0.0; 2];
-        for (mode, state) in self.modes.iter().zip(states) {
-            let after = mode.oscillator.after(h, *state);
-            (0..2).for_each(|i| moved[i] += mode.along[i] * (after[0] - state[0]));
-            *state = after;
-        }
-        moved
-    }
-
-    /// Speed at which the modes move each contact across the surfaces, m/s.
-    fn across(&self, states: &[[f64; 2]]) -> [f64; 2] {
-        let of =
-            |i: usize| self.modes.iter().zip(states).map(|(mode, [_, v])| mode.approach[i] * v).sum::<f64>();
-        [0, 1].map(|i| of(i).abs())
-    }
-
-    fn kick_modes(&self, states: &mut [[f64; 2]], (across, along): ([f64; 2], [f64; 2]), h: f64) {
-        for (mode, [_, v]) in self.modes.iter().zip(states) {
-            for i in 0..2 {
-                *v += h * (mode.along[i] * along[i] - mode.approach[i] * across[i]);
-            }
-        }
+        // contacts that are open forget where they were
+        (0..2).filter_map(of).fold(0.0, f64::max).ceil().max(1.0)
     }
 
     fn kick(&self, velocity: &mut [f64; 2], forces: [f64; 2], h: f64) {

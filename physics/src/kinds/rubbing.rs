@@ -3,7 +3,8 @@
 use crate::contact::{Hertz, TangentialContact};
 use crate::dynamics::StopReason;
 use crate::dynamics::integration::{Integration, Options};
-use crate::dynamics::sliding::{Slid, Sliding, SurfaceMode, TurningBody};
+use crate::dynamics::sliding::{Slid, Sliding, TurningBody};
+use crate::dynamics::surface_modes::SurfaceMode;
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::kinds::impacts::SAMPLES_PER_CONTACT;

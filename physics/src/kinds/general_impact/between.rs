@@ -9,7 +9,7 @@ use crate::body::continuum::{MeshOptions, cached};
 use crate::body::free_sphere::sphere_residual;
 use crate::contact::Hertz;
 use crate::dynamics::MovingBody;
-use crate::dynamics::sliding::SurfaceMode;
+use crate::dynamics::surface_modes::SurfaceMode;
 use crate::dynamics::system::{PLATE, System};
 use crate::error::Result;
 use crate::kinds::plate_impact;

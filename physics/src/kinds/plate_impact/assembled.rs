@@ -79,8 +79,8 @@ pub(super) fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitP
 }
 
 /// Models A and B with `modes` modes of a plate that is struck beside its centre.
-pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize) -> Result<System> {
-    let OffCentreModes { body, along } = off_centre::modes(&setup.plate, setup.outer.offset, modes)?;
+pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<System> {
+    let OffCentreModes { body, along } = off_centre::modes(&setup.plate, setup.outer.offset, modes, plates)?;
     let centre: Vec<f64> = body.participation.iter().map(|phi| phi[1]).collect();
     let mut system = join(setup, body, [0.0; 2])?;
     system.along = along;
@@ -115,7 +115,7 @@ pub(super) fn off_centre_continuum(
 pub(super) fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<Assembled> {
     if setup.outer.offset > 0.0 {
         return Ok(Assembled {
-            system: off_centre_system(setup, modes)?,
+            system: off_centre_system(setup, modes, plates)?,
             omega_next: f64::INFINITY,
             fluid: None,
             warnings: Vec::new(),

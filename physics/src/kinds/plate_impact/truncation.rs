@@ -9,6 +9,7 @@ use super::errors::estimated_percent;
 use super::results::quantities;
 use super::trials::{RUNGS, Trials, TruncationError};
 use super::{MAX_MODES, PlateImpact};
+use crate::body::kirchhoff::UnitPlates;
 use crate::body::off_centre;
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
@@ -115,7 +116,7 @@ fn off_centre(
 ) -> Result<Truncation> {
     let options = Options { tolerance: INTEGRATION, end_time, ..Options::default() };
     let run = |system: &System| quantities(system, &integrate(system, &options)?);
-    let many = off_centre_system(setup, MANY.max(MORE * system.modes))?;
+    let many = off_centre_system(setup, MANY.max(MORE * system.modes), &UnitPlates::default())?;
     let [outer, mutual, inner] =
         off_centre::flexibility_beyond(&setup.plate, setup.outer.offset, many.highest_frequency());
     // the inner contact closes when the plate moves down
