@@ -159,3 +159,34 @@ fn what_calculix_cannot_do_is_refused_in_words() {
     assert_eq!(ended.status, 2, "{}", ended.said);
     assert!(ended.said.contains("coarse, paper and fine, not 1%"), "{}", ended.said);
 }
+
+/// Bodies from CAD parts: every quantity of the stored solutions of both programs.
+#[test]
+fn both_programs_agree_on_the_stored_bodies() {
+    let solutions = Path::new(ROOT).join("fem_reference/solutions");
+    let mut compared = 0;
+    for entry in fs::read_dir(solutions).unwrap() {
+        let scene = entry.unwrap().path();
+        let [own, other] =
+            ["coarse", "calculix-coarse"].map(|folder| scene.join(folder).join("summary.json"));
+        if !other.exists() {
+            continue;
+        }
+        let [own, other] = [own, other]
+            .map(|file| serde_json::from_str::<Value>(&fs::read_to_string(file).unwrap()).unwrap());
+        let names = own["uncertainty"].as_object().unwrap().keys();
+        // what both have as one number, no norm of a curve
+        let names = names.filter(|name| !other["uncertainty"][*name].is_null() && own[*name].is_number());
+        for name in names {
+            let number = |of: &Value| of.as_f64().unwrap();
+            let joint = number(&own["uncertainty"][name]).hypot(number(&other["uncertainty"][name]));
+            let apart = (number(&own[name]) - number(&other[name])).abs();
+            assert!(
+                apart <= joint && joint < 0.05 * number(&own[name]).abs(),
+                "{scene:?} {name}: {apart} of {joint}"
+            );
+            compared += 1;
+        }
+    }
+    assert!(compared >= 10, "{compared}");
+}
