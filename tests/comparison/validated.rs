@@ -99,6 +99,20 @@ fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
     assert_eq!((compared, stored), (known.iter().filter(|v| v.place.is_some()).count(), 6 * 3));
 }
 
+/// The centre of a plate that is struck beside it does not sink under the outer body.
+#[test]
+fn the_centre_of_an_off_centre_impact_moves_as_in_finite_elements() {
+    for scene in scenes().iter().filter(|scene| scene.name.starts_with("off-centre")) {
+        let Lookup::Found(reference) = Store::shipped().unwrap().find(scene, Resolution::Paper) else {
+            panic!("{} is not stored", scene.name)
+        };
+        let model = Reduced::new(scene, Model::B, None).unwrap().run_with_history(1e-7).unwrap();
+        let compared = compare_scene(scene, &reference.outcome, &[model]);
+        let row = compared.models[0].discrepancy("plate_displacement_rms").unwrap();
+        assert!(row.relative.unwrap() < 0.05, "{}: {row:?}", scene.name);
+    }
+}
+
 fn at(scene: &str, measures: [f64; 3], off: f64) -> Validation {
     let mut entry = recorded(&shipped().unwrap(), "scaled-plate-r10", Model::C).unwrap();
     let [patch_over_thickness, contact_over_period, mass_ratio] = measures;

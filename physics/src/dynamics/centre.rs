@@ -24,6 +24,8 @@ pub struct LocalCentre {
     modulus: f64,
     /// Square of the radius of the circle, m^2.
     circle: f64,
+    /// Whether the outer body strikes beside the centre, away from the circle.
+    is_beside: bool,
 }
 
 impl LocalCentre {
@@ -32,7 +34,13 @@ impl LocalCentre {
     pub fn new(flexibility: PatchFlexibility, laws: &[Hertz; 2], modulus: f64, hit: &HertzImpact) -> Self {
         let tip_radius = laws.map(|law| law.tip_radius);
         let circle = SHARE * SHARE * tip_radius[0] * hit.approach_peak();
-        Self { flexibility, tip_radius, modulus, circle }
+        Self { flexibility, tip_radius, modulus, circle, is_beside: false }
+    }
+
+    /// The same where the outer body strikes beside the centre: its face sinks elsewhere.
+    #[must_use]
+    pub fn beside(self) -> Self {
+        Self { is_beside: true, ..self }
     }
 
     /// Displacement of the centre per force of contact `j` with the patch `p` in m, in m/N: the mean of both faces.
@@ -46,7 +54,13 @@ impl LocalCentre {
         between[j] = patch;
         let (small, large) = (patch.min(self.circle), patch.max(self.circle));
         let half_space = 0.75 / (self.modulus * large.sqrt()) * (1.0 - 0.2 * small / large);
-        0.5 * (self.flexibility.at(own)[2 * j] + self.flexibility.at(between)[1] + half_space)
+        let (own, mutual) = (self.flexibility.at(own)[2 * j] + half_space, self.flexibility.at(between)[1]);
+        match (self.is_beside, j) {
+            (false, _) => 0.5 * (own + mutual),
+            // both faces of the centre move as the inner contact does
+            (true, 0) => mutual,
+            (true, _) => 0.5 * own,
+        }
     }
 
     /// Displacement in m along z in addition to the modes', with the patches `p` in m and the forces `f` in N.

@@ -33,14 +33,14 @@ pub struct SurfaceForces {
 #[derive(Debug, Clone)]
 pub struct MovingSurfaces<'a> {
     modes: &'a [SurfaceMode],
-    blocks: Vec<Block>,
+    blocks: Vec<ModeBlock>,
     /// Duration in s of the free motion that the blocks are prepared for.
     duration: f64,
 }
 
 /// Modes side by side.
 #[derive(Debug, Clone, Copy)]
-struct Block {
+struct ModeBlock {
     /// See [`SurfaceMode`], by contact.
     approach: [f64x4; 2],
     along: [f64x4; 2],
@@ -53,7 +53,7 @@ struct Block {
 impl<'a> MovingSurfaces<'a> {
     /// At rest.
     pub fn new(modes: &'a [SurfaceMode]) -> Self {
-        let blocks = modes.chunks(LANES).map(|chunk| Block {
+        let blocks = modes.chunks(LANES).map(|chunk| ModeBlock {
             approach: [0, 1].map(|i| each(chunk, |mode| mode.approach[i])),
             along: [0, 1].map(|i| each(chunk, |mode| mode.along[i])),
             free: [[f64x4::ZERO; 2]; 2],
