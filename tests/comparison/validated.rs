@@ -99,7 +99,7 @@ fn what_is_recorded_is_what_scenes_models_and_stored_references_give_now() {
     assert_eq!((compared, stored), (known.iter().filter(|v| v.place.is_some()).count(), 6 * 3));
 }
 
-/// The centre of a plate that is struck beside it does not sink under the outer body.
+/// The centre of a plate that is struck off-centre does not sink under the outer body.
 #[test]
 fn the_centre_of_an_off_centre_impact_moves_as_in_finite_elements() {
     for scene in scenes().iter().filter(|scene| scene.name.starts_with("off-centre")) {

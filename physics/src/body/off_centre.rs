@@ -13,12 +13,12 @@ const EDGE: f64 = 6.0;
 /// Points of the quadrature over the waves left out.
 const QUADRATURE: usize = 64;
 
-/// Modes of a plate that is struck beside its centre.
+/// Modes of a plate that is struck off-centre.
 #[derive(Debug, Clone)]
 pub struct OffCentreModes {
     /// The inner body faces the centre, which modes with nodal diameters leave at rest.
     pub body: ModalBody,
-    /// Displacements of the faces along x, in which direction the outer body strikes beside the centre, at the outer and the inner contact:
+    /// Displacements of the faces along x, along which the outer body strikes off-centre, at the outer and the inner contact:
     /// the plate's normal turns. kg^(-1/2). Shape (n, 2).
     pub along: Vec<[f64; 2]>,
 }
@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    /// Slopes at both contacts under a force beside the centre, from Michell's solution (Timoshenko & Woinowsky-Krieger, section 64):
+    /// Slopes at both contacts under an off-centre force, from Michell's solution (Timoshenko & Woinowsky-Krieger, section 64):
     /// at x on the line of the force at c, ((1 - x^2)(1 - c^2) + (x - c)^2 ln((x - c)^2/(1 - x c)^2)) P R^2/(16 pi D).
     #[test]
     fn the_faces_move_along_x_where_the_plate_s_normal_turns() {

@@ -24,8 +24,8 @@ pub struct LocalCentre {
     modulus: f64,
     /// Square of the radius of the circle, m^2.
     circle: f64,
-    /// Whether the outer body strikes beside the centre, away from the circle.
-    is_beside: bool,
+    /// Whether the outer body strikes off-centre, away from the circle.
+    is_off_centre: bool,
 }
 
 impl LocalCentre {
@@ -34,13 +34,13 @@ impl LocalCentre {
     pub fn new(flexibility: PatchFlexibility, laws: &[Hertz; 2], modulus: f64, hit: &HertzImpact) -> Self {
         let tip_radius = laws.map(|law| law.tip_radius);
         let circle = SHARE * SHARE * tip_radius[0] * hit.approach_peak();
-        Self { flexibility, tip_radius, modulus, circle, is_beside: false }
+        Self { flexibility, tip_radius, modulus, circle, is_off_centre: false }
     }
 
-    /// The same where the outer body strikes beside the centre: its face sinks elsewhere.
+    /// The same of an off-centre impact: the face under the outer body sinks elsewhere.
     #[must_use]
-    pub fn beside(self) -> Self {
-        Self { is_beside: true, ..self }
+    pub fn off_centre(self) -> Self {
+        Self { is_off_centre: true, ..self }
     }
 
     /// Displacement of the centre per force of contact `j` with the patch `p` in m, in m/N: the mean of both faces.
@@ -55,7 +55,7 @@ impl LocalCentre {
         let (small, large) = (patch.min(self.circle), patch.max(self.circle));
         let half_space = 0.75 / (self.modulus * large.sqrt()) * (1.0 - 0.2 * small / large);
         let (own, mutual) = (self.flexibility.at(own)[2 * j] + half_space, self.flexibility.at(between)[1]);
-        match (self.is_beside, j) {
+        match (self.is_off_centre, j) {
             (false, _) => 0.5 * (own + mutual),
             // both faces of the centre move as the inner contact does
             (true, 0) => mutual,

@@ -104,7 +104,7 @@ fn turning_body(shape: &Shape, material: &Material, turning: &Turning) -> Option
 pub(super) fn moves_along(outer: &Outer, inner: Option<&Inner>) -> bool {
     let rubs = outer.turning.friction > 0.0 || inner.is_some_and(|inner| inner.turning.friction > 0.0);
     let spins = outer.turning.spin != 0.0 || inner.is_some_and(|inner| inner.turning.spin != 0.0);
-    // beside the centre a plate's normal turns
+    // off-centre a plate's normal turns
     outer.angle != 0.0 || spins || outer.offset != 0.0 && rubs
 }
 

@@ -13,6 +13,7 @@ mod mesh;
 mod meshed;
 mod morph;
 mod pressure;
+mod statics;
 mod struck;
 mod surface;
 mod view;

@@ -173,7 +173,7 @@ pub(in crate::kinds) fn off_centre_plate(
     // the plate is observed at its centre, under the inner body
     let inner: Vec<f64> = system.approach[1][PLATE..].iter().map(|approach| -approach).collect();
     system.centre[PLATE..].copy_from_slice(&inner);
-    system.local_centre = system.local_centre.beside();
+    system.local_centre = system.local_centre.off_centre();
     Ok((system, between.other, between.warnings))
 }
 

@@ -86,7 +86,7 @@ pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize, plates: &Unit
     system.along = along;
     // the plate is observed at its centre, not at the mean of both contacts
     system.centre[PLATE..].copy_from_slice(&centre);
-    system.local_centre = system.local_centre.beside();
+    system.local_centre = system.local_centre.off_centre();
     Ok(system)
 }
 
