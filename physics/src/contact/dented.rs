@@ -7,8 +7,8 @@
 //! The approach follows from the energy: on the way to a deeper dent F dx = dW + sum dD, with the elastic energy W of both surfaces and
 //! what each has dissipated, D. Unloading returns W. D never falls, so a closed loop never returns more than it took.
 
-use super::Hertz;
 use super::elastic_plastic::{ElasticPlastic, Flattened};
+use super::{Hertz, Press};
 use crate::material::Material;
 use crate::numerics::root::{root, root_near};
 use std::f64::consts::PI;
@@ -68,6 +68,8 @@ pub struct DentedContact {
     near: [f64; 2],
     /// Up to where it is elastic.
     limit: YieldPoint,
+    /// How it is pressed at the end of the last step.
+    press: Press,
     /// Elastic energy now, and what has been dissipated so far on all spots, J.
     stored: f64,
     dissipated: f64,
@@ -92,9 +94,7 @@ impl YieldPoint {
 
 /// The contact at a pressure.
 struct Pressed {
-    /// In N, and radius in m.
-    force: f64,
-    radius: f64,
+    press: Press,
     /// Approach in m and energy in J that unloading gives back.
     recovers: f64,
     stored: f64,
@@ -136,6 +136,7 @@ impl DentedContact {
             weaker,
             near: [1.0; 2],
             limit: YieldPoint::NONE,
+            press: Press::default(),
             stored: 0.0,
             dissipated: 0.0,
             widest: 0.0,
@@ -176,6 +177,11 @@ impl DentedContact {
         self.surfaces.iter().flatten().map(|s| s.dent.depth).sum()
     }
 
+    /// How it is pressed at the end of the last step.
+    pub fn press(&self) -> Press {
+        self.press
+    }
+
     /// Work in J done on the contact so far: what it stores and what it has lost.
     pub fn taken(&self) -> f64 {
         self.stored + self.dissipated
@@ -210,7 +216,7 @@ impl DentedContact {
         }
         let w = low.exp();
         let at = self.pressed(w);
-        self.limit = YieldPoint { w, force: at.force, approach: at.recovers, energy: at.energy() };
+        self.limit = YieldPoint { w, force: at.press.force, approach: at.recovers, energy: at.energy() };
         self
     }
 
@@ -273,8 +279,7 @@ impl DentedContact {
         };
         let recovers = radius * unit * mean(&recovers);
         Pressed {
-            force,
-            radius,
+            press: Press { force, radius, evenness: even.evenness },
             recovers,
             stored: force * recovers / (1.0 + mean(&Flattened::exponent)),
             now,
@@ -317,7 +322,7 @@ impl DentedContact {
             return at.recovers;
         }
         // of second order, as the steps are, and exact in energy
-        approach + 2.0 * (at.energy() - energy) / (force + at.force)
+        approach + 2.0 * (at.energy() - energy) / (force + at.press.force)
     }
 
     /// Square of the overload of the weaker surface, if virgin, at the approach `x` in m of both, which is beyond that at which they touch.
@@ -357,7 +362,7 @@ impl DentedContact {
         let [at, next] = [w, beyond].map(|w| self.pressed(w));
         let approach = self.approach(beyond, &next) - self.approach(w, &at);
         let lost = if w > self.limit.w { self.deepens(&at).iter().sum() } else { 0.0 };
-        [at.force, (next.force - at.force) / approach, self.dissipated + lost + at.stored]
+        [at.press.force, (next.press.force - at.press.force) / approach, self.dissipated + lost + at.stored]
     }
 
     /// What both dents dissipate further on the way to the contact `at`, J; never negative.
@@ -367,13 +372,13 @@ impl DentedContact {
 
     /// Ends a step at the approach `x` in m.
     pub fn advance(&mut self, x: f64) {
-        self.stored = 0.0;
+        (self.stored, self.press) = (0.0, Press::default());
         if x <= self.depth() {
             return;
         }
         let w = self.overload(x);
         let at = self.pressed(w);
-        self.stored = at.stored;
+        (self.stored, self.press) = (at.stored, at.press);
         self.near = [0, 1].map(|i| at.now[i].map_or(w, |now| now.approach).max(LEAST_NEAR));
         if w <= self.limit.w {
             return;
@@ -382,19 +387,19 @@ impl DentedContact {
         let lost = self.deepens(&at);
         let all = lost[0] + lost[1];
         self.dissipated += all;
-        self.widest = self.widest.max(at.radius);
+        self.widest = self.widest.max(at.press.radius);
         for (i, surface) in self.surfaces.iter_mut().enumerate() {
             if let (Some(DentedSurface { dent, .. }), Some(now)) = (surface, at.now[i]) {
                 dent.lost = at.lost[i];
                 dent.depth += if all > 0.0 { deeper * lost[i] / all } else { 0.0 };
-                dent.curvature = dent.flattening(at.radius, now.lasting) / at.radius;
+                dent.curvature = dent.flattening(at.press.radius, now.lasting) / at.press.radius;
                 dent.slope = dent.slope.max(now.lasting);
                 if now.approach > dent.deepest.approach.max(1.0) {
                     dent.deepest = now;
                 }
             }
         }
-        self.limit = YieldPoint { w, force: at.force, approach: at.recovers, energy: at.energy() };
+        self.limit = YieldPoint { w, force: at.press.force, approach: at.recovers, energy: at.energy() };
     }
 }
 

@@ -1,5 +1,6 @@
 //! Hertz's law for a spherical tip on a flat face.
 
+use super::Press;
 use super::radial_slip::{dundurs_beta, stiffening};
 use crate::scene::Material;
 
@@ -61,6 +62,11 @@ impl Hertz {
     /// Radius of the contact patch in m under `force` N: sqrt(r delta).
     pub fn contact_radius(&self, force: f64) -> f64 {
         (self.tip_radius * self.approach(force.max(0.0))).sqrt()
+    }
+
+    /// The contact under `force` N.
+    pub fn press(&self, force: f64) -> Press {
+        Press { force, radius: self.contact_radius(force), evenness: 0.0 }
     }
 
     /// Pressure at the patch's centre in Pa under `force` N: 3 F / (2 pi a^2); 0 without force.

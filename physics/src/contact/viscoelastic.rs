@@ -5,6 +5,7 @@
 //! tip when its force would pull and stays off, recovering, until the tip reaches it again. While the contact grows this is Lee and
 //! Radok's solution, while it shrinks Ting's. Here every spring is two in series, one of each body.
 
+use super::Press;
 use crate::material::{Creep, Deformation, Material};
 
 /// One body's half of the springs.
@@ -25,6 +26,8 @@ pub struct ViscoelasticContact {
     springs: Vec<[Deformation; 2]>,
     /// Deformation in m that each spring would have at the end of the step without a force. Shape (springs).
     free: Vec<f64>,
+    /// How it is pressed at the end of the last step, as if by Hertz's distribution.
+    press: Press,
     /// Length of a step in s, the power that the springs lose in W, and what they have lost in J.
     step: f64,
     power: f64,
@@ -43,7 +46,17 @@ impl ViscoelasticContact {
 
     fn virgin_springs(tip_radius: f64, width: f64, halves: [Half; 2]) -> Self {
         let (springs, free) = (Vec::new(), Vec::new());
-        Self { tip_radius, width, halves, springs, free, step: 0.0, power: 0.0, lost: 0.0 }
+        Self {
+            tip_radius,
+            width,
+            halves,
+            springs,
+            free,
+            press: Press::default(),
+            step: 0.0,
+            power: 0.0,
+            lost: 0.0,
+        }
     }
 
     /// Prepares steps of `h` s.
@@ -122,8 +135,10 @@ impl ViscoelasticContact {
             self.springs.push(Default::default());
         }
         let compliance = self.compliance();
+        self.press = Press { radius: self.radius(x), ..Press::default() };
         for k in 0..self.springs.len() {
             let [force, _] = self.spring(k, compliance, self.pressed(k, x));
+            self.press.force += sides(k) * force;
             for (half, state) in self.halves.iter().zip(&mut self.springs[k]) {
                 half.creep.advance(state, force / half.stiffness);
             }
@@ -132,6 +147,22 @@ impl ViscoelasticContact {
         self.lost += 0.5 * self.step * (self.power + power);
         self.power = power;
         self.set_free();
+    }
+
+    /// How it is pressed at the end of the last step.
+    pub fn press(&self) -> Press {
+        self.press
+    }
+
+    /// Radius in m up to which springs push at the end of the step at the approach `x` in m.
+    fn radius(&self, x: f64) -> f64 {
+        let beyond_free = |k: usize| self.pressed(k, x) - self.free.get(k).copied().unwrap_or_default();
+        let last = (0..self.springs.len()).rev().find(|k| beyond_free(*k) > 0.0);
+        let between = |last: usize| {
+            let [inside, outside] = [last, last + 1].map(beyond_free);
+            (last as f64 + inside / (inside - outside)) * self.width
+        };
+        last.map_or(0.0, between)
     }
 
     /// Energy in J that the springs store and have lost.

@@ -5,6 +5,7 @@ use super::contact_balance::ContactBalance;
 use super::driver::StopReason;
 use super::free_flight;
 use super::system::System;
+use crate::contact::Press;
 use crate::result::{History, Losses};
 
 /// Samples between the ends of steps and flights that a requested history has at most: 9 MB.
@@ -21,6 +22,8 @@ pub struct Options {
     pub sample_interval: Option<f64>,
     /// Whether the history of a dry, elastic impact is that of the contact forces alone, which costs little.
     pub forces_alone: bool,
+    /// Whether the history comes with how contacts with memory are pressed.
+    pub presses: bool,
     /// Most samples of a history between the ends of steps and flights: a long flight has wider intervals.
     pub samples_between: usize,
     /// Relative error of the force peaks from looking for them within the steps; 0 = as exact as rounding permits.
@@ -58,6 +61,7 @@ impl Default for Options {
             end_time: None,
             sample_interval: None,
             forces_alone: false,
+            presses: false,
             samples_between: SAMPLES_BETWEEN,
             peak_error: 0.0,
             results: None,
@@ -97,6 +101,8 @@ pub struct Integration {
     pub stop: StopReason,
     /// Course over time, if asked for.
     pub history: Option<History>,
+    /// How outer and inner contact are pressed at the samples of the history, if asked for and not by the law of the system.
+    pub presses: Option<[Vec<Press>; 2]>,
 }
 
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
@@ -204,6 +210,7 @@ impl Closing<'_> {
                 StopReason::of(contacts.iter().any(|c| c.closed))
             },
             history,
+            presses: None,
         }
     }
 }

@@ -4,9 +4,7 @@
 //! Bodies, modes of what is struck and the contacts' tangential flexibility take part.
 
 use super::surface_modes::{MovingSurfaces, SurfaceForces, SurfaceMode};
-use crate::contact::TangentialContact;
-use crate::error::{Error, Result};
-use crate::result::History;
+use crate::contact::{Press, TangentialContact};
 
 /// Longest step over the inverse angular frequency of the sticking contact.
 const LONGEST: f64 = 0.05;
@@ -56,37 +54,30 @@ pub struct Slid {
 }
 
 impl Sliding<'_> {
-    /// Moves the bodies while they are pressed together by the forces `history`.
-    ///
-    /// # Errors
-    /// [`Error::Internal`] of a history without forces.
-    pub fn slide(mut self, history: &History) -> Result<Slid> {
-        let forces = ["outer_force", "inner_force"].map(|name| history.curve(name));
-        let [Some(outer), Some(inner)] = forces else {
-            return Err(Error::Internal("the history has no contact forces".into()));
-        };
+    /// Moves the bodies while they are pressed together as `presses` has it at every `time` in s. Shapes (samples), (contacts, samples).
+    pub fn slide(mut self, time: &[f64], presses: &[Vec<Press>; 2]) -> Slid {
         let mut slid = Slid::default();
         let mut velocity = self.velocity;
         let mut surfaces = MovingSurfaces::new(self.modes);
         let mut by_friction = surfaces.clone();
-        for k in 1..history.len() {
-            let (from, to) = ([outer[k - 1], inner[k - 1]], [outer[k], inner[k]]);
-            let length = history.time[k] - history.time[k - 1];
-            let count = self.steps(from, to, length);
+        for k in 1..time.len() {
+            let [from, to] = [k - 1, k].map(|k| [presses[0][k], presses[1][k]]);
+            let length = time[k] - time[k - 1];
+            let count = self.steps([0, 1].map(|i| from[i].radius.max(to[i].radius)), length);
             let h = length / count;
+            let mut press = from;
             for step in 1..=count as usize {
-                let share = step as f64 / count;
-                let pressed = |share: f64| [0, 1].map(|i| (from[i] + share * (to[i] - from[i])).max(0.0));
-                let normal = pressed(share);
-                let before = SurfaceForces { across: pressed(share - 1.0 / count), along: self.forces() };
+                let across = press.map(|press| press.force);
+                let before = SurfaceForces { across, along: self.forces() };
+                press = [0, 1].map(|i| from[i].between(&to[i], step as f64 / count));
                 self.kick(&mut velocity, before.along, 0.5 * h);
                 surfaces.kick(before, 0.5 * h);
                 let moved = surfaces.drift(h);
                 for (i, contact) in self.contacts.iter_mut().enumerate() {
                     let step = velocity[i] * h - moved[i];
-                    contact.iter_mut().for_each(|contact| contact.advance(normal[i], step));
+                    contact.iter_mut().for_each(|contact| contact.advance(press[i], step, h));
                 }
-                let after = SurfaceForces { across: normal, along: self.forces() };
+                let after = SurfaceForces { across: press.map(|press| press.force), along: self.forces() };
                 self.kick(&mut velocity, after.along, 0.5 * h);
                 surfaces.kick(after, 0.5 * h);
                 by_friction.kick(SurfaceForces { across: [0.0; 2], ..after }, h);
@@ -98,18 +89,18 @@ impl Sliding<'_> {
         for (i, contact) in self.contacts.iter().enumerate() {
             slid.dissipated[i] = contact.as_ref().map_or(0.0, TangentialContact::dissipated);
         }
-        Ok(slid)
+        slid
     }
 
     fn forces(&self) -> [f64; 2] {
         [0, 1].map(|i| self.contacts[i].as_ref().map_or(0.0, |contact| contact.force))
     }
 
-    /// Steps that an interval of that `length` in s takes, for the frequency of the bodies on contacts that stick; modes move freely by
-    /// themselves, and count only as far as the steps have to be stable.
-    fn steps(&self, from: [f64; 2], to: [f64; 2], length: f64) -> f64 {
+    /// Steps that an interval of that `length` in s takes, for the frequency of the bodies on contacts of these `radii` in m that stick; modes
+    /// move freely by themselves, and count only as far as the steps have to be stable.
+    fn steps(&self, radii: [f64; 2], length: f64) -> f64 {
         let of = |i: usize| {
-            let stiffness = self.contacts[i].as_ref()?.sticking_stiffness(from[i].max(to[i]));
+            let stiffness = self.contacts[i].as_ref()?.sticking_stiffness(radii[i]);
             let modes: f64 = self.modes.iter().map(|mode| mode.along[i] * mode.along[i]).sum();
             let accurate = (stiffness * self.mobility[i][i]).sqrt() / LONGEST;
             let stable = (stiffness * (self.mobility[i][i] + modes)).sqrt() / STABLE;

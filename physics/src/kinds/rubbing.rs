@@ -1,6 +1,6 @@
 //! Bodies that strike obliquely or turn: their motion along the surfaces they touch, from the forces across them.
 
-use crate::contact::{Hertz, TangentialContact};
+use crate::contact::{Hertz, Press, TangentialContact};
 use crate::dynamics::StopReason;
 use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::sliding::{Slid, Sliding, TurningBody};
@@ -12,9 +12,15 @@ use crate::material::Material;
 use crate::numerics::duhamel::Oscillator;
 use crate::result::Sideways;
 use crate::scene::{Inner, Outer, Plate, Shape, Turning};
+use std::borrow::Cow;
 
 /// Velocity across the surfaces by forces along them, over the speed, from which on there is a warning.
 const NOTABLE_ACROSS: f64 = 0.01;
+/// Growth of a contact's stiffness by friction from which on there is a warning where a model omits it.
+const NOTABLE_STIFFENING: f64 = 1e-3;
+
+/// Law of a contact, and the materials of tip and face.
+pub(super) type Touching<'a> = (Hertz, [&'a Material; 2]);
 
 /// What the outer body strikes, as far as that moves along its surface.
 #[derive(Debug, Clone)]
@@ -52,6 +58,11 @@ impl StruckSurface {
         }));
         Self::Moving(modes)
     }
+
+    /// Whether elastic modes move it along itself.
+    pub(super) fn vibrates(&self) -> bool {
+        matches!(self, Self::Moving(modes) if modes.iter().any(|mode| mode.oscillator.omega > 0.0))
+    }
 }
 
 /// Bodies, and what they touch.
@@ -59,8 +70,7 @@ pub(super) struct Rubbing<'a> {
     pub(super) outer: &'a Outer,
     pub(super) inner: Option<&'a Inner>,
     pub(super) struck: StruckSurface,
-    /// Laws and materials (tip, face) of both contacts.
-    pub(super) contacts: [(Hertz, [&'a Material; 2]); 2],
+    pub(super) contacts: [Touching<'a>; 2],
 }
 
 /// Motion along the surfaces, and the energy that friction took.
@@ -108,10 +118,30 @@ pub(super) fn moves_along(outer: &Outer, inner: Option<&Inner>) -> bool {
     outer.angle != 0.0 || spins || outer.offset != 0.0 && rubs
 }
 
+/// Coefficients of friction of both contacts.
+fn frictions(outer: &Outer, inner: Option<&Inner>) -> [f64; 2] {
+    [outer.turning.friction, inner.map_or(0.0, |inner| inner.turning.friction)]
+}
+
+/// A sentence where friction makes the `contacts` of unlike materials stiffer, for a model that omits that.
+pub(super) fn omitted_stiffening(
+    contacts: [Touching<'_>; 2],
+    outer: &Outer,
+    inner: Option<&Inner>,
+) -> Option<String> {
+    let growth = contacts.into_iter().zip(frictions(outer, inner)).map(|((law, [tip, face]), friction)| {
+        let smooth = Hertz::new(law.tip_radius, tip, face);
+        smooth.with_friction(tip, face, friction).stiffness / smooth.stiffness - 1.0
+    });
+    let most = growth.fold(0.0, f64::max);
+    (most > NOTABLE_STIFFENING).then(|| {
+        format!("friction makes the contacts stiffer by up to {:.1} %, which the model omits", 100.0 * most)
+    })
+}
+
 impl Rubbing<'_> {
-    /// Coefficients of friction of both contacts.
     fn frictions(&self) -> [f64; 2] {
-        [self.outer.turning.friction, self.inner.map_or(0.0, |inner| inner.turning.friction)]
+        frictions(self.outer, self.inner)
     }
 
     fn has_friction(&self) -> bool {
@@ -122,7 +152,7 @@ impl Rubbing<'_> {
     pub(super) fn keeping_forces(&self, system: &System, options: Options) -> Options {
         let rubs = self.has_friction();
         let sample_interval = rubs.then(|| system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
-        Options { sample_interval, forces_alone: rubs, ..options }
+        Options { sample_interval, forces_alone: rubs, presses: rubs, ..options }
     }
 
     /// What they do under the contact forces that `result` has as its history; `None` of a run that was cut.
@@ -168,8 +198,7 @@ impl Rubbing<'_> {
         spins: [f64; 2],
         result: &Integration,
     ) -> Result<Slid> {
-        let history = result.history.as_ref();
-        let history = history.ok_or_else(|| Error::Internal("the forces were not kept".into()))?;
+        let (time, presses) = self.presses(result)?;
         let mobilities = bodies.map(|body| body.map_or(0.0, |body| body.mobility()));
         let arms = bodies.map(|body| body.map_or(0.0, |body| body.arm));
         let surfaces = [along - spins[0] * arms[0], spins[1] * arms[1]];
@@ -183,11 +212,26 @@ impl Rubbing<'_> {
         let frictions = self.frictions();
         let contact = |i: usize| {
             let (law, materials) = self.contacts[i];
-            let peak = result.contacts[i].force_peak;
+            let widest = presses[i].iter().map(|press| press.radius).fold(0.0, f64::max);
             // surfaces that do not move along each other stay so, unless a plate between moves them
             let moves = velocity[i] != 0.0 || !modes.is_empty();
-            (moves && peak > 0.0).then(|| TangentialContact::new(law, materials, frictions[i], peak))
+            (moves && widest > 0.0).then(|| TangentialContact::new(law, materials, frictions[i], widest))
         };
-        Sliding { contacts: [contact(0), contact(1)], mobility, modes, velocity }.slide(history)
+        Ok(Sliding { contacts: [contact(0), contact(1)], mobility, modes, velocity }.slide(time, &presses))
+    }
+
+    /// Times in s, and how both contacts are pressed then.
+    fn presses<'b>(&self, result: &'b Integration) -> Result<(&'b [f64], Cow<'b, [Vec<Press>; 2]>)> {
+        let history = result.history.as_ref();
+        let history = history.ok_or_else(|| Error::Internal("the forces were not kept".into()))?;
+        let forces = ["outer_force", "inner_force"].map(|name| history.curve(name));
+        let presses = match (&result.presses, forces) {
+            (Some(presses), _) => Cow::Borrowed(presses),
+            (None, [Some(outer), Some(inner)]) => Cow::Owned([(0, outer), (1, inner)].map(|(i, forces)| {
+                forces.iter().map(|force| self.contacts[i].0.press(force.max(0.0))).collect()
+            })),
+            _ => return Err(Error::Internal("the history has no contact forces".into())),
+        };
+        Ok((&history.time, presses))
     }
 }

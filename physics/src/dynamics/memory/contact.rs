@@ -1,6 +1,6 @@
 //! A contact whose force depends on what it has been through.
 
-use crate::contact::{DentedContact, Hertz, ViscoelasticContact};
+use crate::contact::{DentedContact, Hertz, Press, ViscoelasticContact};
 
 /// A contact law with memory: during a step its force is a function of the approach at the step's end.
 #[derive(Debug, Clone)]
@@ -43,6 +43,15 @@ impl Contact {
             Contact::Elastic(_) => {}
             Contact::Dented(contact) => contact.advance(x),
             Contact::Viscoelastic(contact) => contact.advance(x),
+        }
+    }
+
+    /// How it is pressed at the end of a step with `force` N.
+    pub(super) fn press(&self, force: f64) -> Press {
+        match self {
+            Contact::Elastic(hertz) => hertz.press(force),
+            Contact::Dented(contact) => contact.press(),
+            Contact::Viscoelastic(contact) => contact.press(),
         }
     }
 

@@ -8,6 +8,7 @@ use super::modes::ModeSet;
 use super::step_force::{StepForce, mean};
 use super::step_length::StepLength;
 use super::{CHANGE, CreepingContacts, Ran};
+use crate::contact::Press;
 use crate::dynamics::contact_balance::ContactBalance;
 use crate::dynamics::driver::{Stepper, StopReason};
 use crate::dynamics::integration::{FluidAccount, Integration, NEGLIGIBLE, Options, unexplained_momentum};
@@ -79,6 +80,7 @@ pub(super) struct MemoryStepper<'a> {
     /// Samples per e-fold of the time since the last contact at most.
     samples_per_fold: f64,
     history: Option<History>,
+    presses: Option<[Vec<Press>; 2]>,
 }
 
 impl<'a> MemoryStepper<'a> {
@@ -134,6 +136,7 @@ impl<'a> MemoryStepper<'a> {
             sample_interval: options.sample_interval.unwrap_or(0.0),
             samples_per_fold: (options.samples_between as f64 / FOLDS).max(1.0),
             history: options.sample_interval.map(|_| History::new(&CURVES)),
+            presses: options.presses.then(Default::default),
             bodies,
         };
         run.record(h);
@@ -351,6 +354,9 @@ impl<'a> MemoryStepper<'a> {
         }
         let [q, v] = self.modes[0].motion(&self.state[0]);
         history.push(self.time, sample(self.system, [&q, &v], local, self.force));
+        for (i, presses) in self.presses.iter_mut().flatten().enumerate() {
+            presses.push(self.bodies.contacts[i].press(self.force[i]));
+        }
     }
 
     /// The results.
@@ -397,6 +403,7 @@ impl<'a> MemoryStepper<'a> {
             supplied: None,
             stop: StopReason::of(self.contacts.iter().any(|contact| contact.closed)),
             history: self.history,
+            presses: self.presses,
         };
         Ran { integration, contacts: self.bodies.contacts, loads: self.loads }
     }

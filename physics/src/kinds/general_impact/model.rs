@@ -16,7 +16,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, integrate};
 use crate::error::{Error, Result};
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
-use crate::kinds::rubbing::Rubbed;
+use crate::kinds::rubbing::{Rubbed, omitted_stiffening};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::Material;
 use crate::numerics::stopwatch::Stopwatch;
@@ -269,10 +269,9 @@ impl ContactModel {
         if is_omitted && self.scene.general_impact()?.moves_along() {
             warnings.push("motion along the surfaces is omitted by the reduced model".into());
         }
-        if is_omitted && self.setup.rubs() && (self.memory.is_some() || self.setup.body().is_some()) {
-            warnings.push(
-                "friction along the surfaces is omitted by the reduced model: it only stiffens the contact of unlike materials".into(),
-            );
+        if self.memory.is_some() || self.setup.body().is_some() {
+            let scene = self.scene.general_impact()?;
+            warnings.extend(omitted_stiffening(self.touching(scene), &scene.outer, scene.inner.as_ref()));
         }
         warnings.extend(is_cut.then(|| CUT.to_owned()));
         let transmitted = self.setup.inner_mass().map(|mass| 0.5 * mass * result.velocity[1].powi(2));

@@ -4,7 +4,7 @@ use super::ContactModel;
 use crate::dynamics::integration::{Integration, Options};
 use crate::error::Result;
 use crate::kinds::general_impact::{GeneralImpact, Struck};
-use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface};
+use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, Touching};
 use crate::result::Table;
 
 impl ContactModel {
@@ -26,7 +26,7 @@ impl ContactModel {
         Ok(self.rubbing()?.map_or(options, |rubbing| rubbing.keeping_forces(&self.system, options)))
     }
 
-    /// The bodies, if they move along the surfaces as the model has it: without materials that yield or relax.
+    /// The bodies, if they move along the surfaces as the model has it: not where a body that relaxes turns.
     pub(super) fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
         let scene = self.scene.general_impact()?;
         let GeneralImpact { outer, inner, struck, .. } = scene;
@@ -39,13 +39,19 @@ impl ContactModel {
             Some(Struck::Wall(_)) => StruckSurface::Moving(Vec::new()),
             None => StruckSurface::OtherBody,
         };
-        if self.memory.is_some() || !scene.moves_along() {
+        let relaxes = !self.faces[0].relaxation.is_empty();
+        if !scene.moves_along() || surface.vibrates() && relaxes {
             return Ok(None);
         }
+        Ok(Some(Rubbing { outer, inner: inner.as_ref(), struck: surface, contacts: self.touching(scene) }))
+    }
+
+    /// Both contacts of `scene`.
+    pub(super) fn touching<'a>(&'a self, scene: &'a GeneralImpact) -> [Touching<'a>; 2] {
+        let GeneralImpact { outer, inner, .. } = scene;
         let laws = self.system.laws;
         let behind = inner.as_ref().map_or(&outer.material, |inner| &inner.material);
-        let contacts = [(laws[0], [&outer.material, &self.faces[0]]), (laws[1], [behind, &self.faces[1]])];
-        Ok(Some(Rubbing { outer, inner: inner.as_ref(), struck: surface, contacts }))
+        [(laws[0], [&outer.material, &self.faces[0]]), (laws[1], [behind, &self.faces[1]])]
     }
 
     /// What the bodies do along the surfaces; `None` where they do not move so, or the run was cut.

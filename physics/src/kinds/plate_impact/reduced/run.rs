@@ -15,7 +15,7 @@ use crate::kinds::plate_impact::trials::TruncationError;
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
 use crate::kinds::plate_impact::{Kind, PlateImpact};
-use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, moves_along};
+use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, Touching, moves_along, omitted_stiffening};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::numerics::stopwatch::Stopwatch;
 use crate::result::{
@@ -92,23 +92,25 @@ impl Reduced {
         Ok(self.rubbing()?.map_or(options, |rubbing| rubbing.keeping_forces(&self.system, options)))
     }
 
-    /// The bodies, if they move along the plate.
+    /// The bodies, if they move along the plate as the model has it: not where a plate that relaxes turns.
     fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
         let setup = self.scene.plate_impact()?;
         let PlateImpact { outer, inner, plate, .. } = setup;
         if !moves_along(outer, Some(inner)) {
             return Ok(None);
         }
+        let struck = StruckSurface::plate(plate, outer.offset, &self.system);
+        if struck.vibrates() && !plate.material.relaxation.is_empty() {
+            return Ok(None);
+        }
+        Ok(Some(Rubbing { outer, inner: Some(inner), struck, contacts: self.touching(setup) }))
+    }
+
+    /// Both contacts of `setup`.
+    fn touching<'a>(&self, setup: &'a PlateImpact) -> [Touching<'a>; 2] {
+        let PlateImpact { outer, inner, plate, .. } = setup;
         let laws = self.system.laws;
-        Ok(Some(Rubbing {
-            outer,
-            inner: Some(inner),
-            struck: StruckSurface::plate(plate, outer.offset, &self.system),
-            contacts: [
-                (laws[0], [&outer.material, &plate.material]),
-                (laws[1], [&inner.material, &plate.material]),
-            ],
-        }))
+        [(laws[0], [&outer.material, &plate.material]), (laws[1], [&inner.material, &plate.material])]
     }
 
     /// What the bodies do along the plate, of a `result` with forces; `None` where they do not move so, or the run was cut.
@@ -228,7 +230,8 @@ impl Reduced {
     /// Results and history of a single impact, from one integration.
     fn unjudged_course(&self, tolerance: f64) -> Result<(Table, History)> {
         let sample_interval = Some(self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
-        let options = self.keeping_forces(Options { sample_interval, ..self.options(tolerance) })?;
+        let options = self.keeping_forces(self.options(tolerance))?;
+        let options = Options { sample_interval, forces_alone: false, ..options };
         let (result, _) = self.impacts().one(&options, self.memory.as_ref())?;
         let table = self.table(&result, self.rubbed(&result)?.as_ref());
         Ok((table, result.history.ok_or_else(|| Error::Internal("a history was requested".into()))?))
@@ -315,10 +318,8 @@ impl Reduced {
         }));
         let rubbed = self.rubbed(result)?;
         warnings.extend(rubbed.as_ref().and_then(Rubbed::warning));
-        if setup.rubs() && self.memory.is_some() {
-            warnings.push(
-                "friction along the plate is omitted by the reduced models: it only stiffens the contact of unlike materials".into(),
-            );
+        if self.memory.is_some() {
+            warnings.extend(omitted_stiffening(self.touching(setup), &setup.outer, Some(&setup.inner)));
         }
         warnings.extend(film_warning(result.losses.squeeze_film, system));
         warnings.extend(uncertain(result, tolerance));

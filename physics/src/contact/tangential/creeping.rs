@@ -1,0 +1,92 @@
+//! The tangential springs of bodies that relax: each is two in series, one of each body.
+
+use super::at_most;
+use crate::material::{Creep, Deformation, Material};
+
+/// What one body adds to every spring.
+#[derive(Debug, Clone)]
+struct Half {
+    /// Share of the spring's compliance at once.
+    share: f64,
+    creep: Creep,
+}
+
+/// All springs of a contact; forces are over the stiffness of a spring at once, in m.
+#[derive(Debug, Clone)]
+pub(super) struct CreepingSprings {
+    halves: [Half; 2],
+    /// Shape (springs; along the motion, across it; bodies).
+    states: Vec<[[Deformation; 2]; 2]>,
+    /// Length of a step in s; power that the springs lose along the motion in m^2/s, and what they have lost in m^2.
+    step: f64,
+    power: f64,
+    lost: f64,
+}
+
+impl CreepingSprings {
+    /// Springs of bodies of these `materials` with these `shares` of the compliance; `None` if both are elastic.
+    pub(super) fn new(materials: [&Material; 2], shares: [f64; 2], count: usize) -> Option<Self> {
+        let half = |i: usize| Half { share: shares[i], creep: Creep::new(&materials[i].relaxation) };
+        materials.iter().any(|material| !material.relaxation.is_empty()).then(|| Self {
+            halves: [half(0), half(1)],
+            states: vec![Default::default(); count],
+            step: 0.0,
+            power: 0.0,
+            lost: 0.0,
+        })
+    }
+
+    /// Prepares a step of `h` s.
+    pub(super) fn prepare(&mut self, h: f64) {
+        if h != self.step {
+            self.step = h;
+            self.halves.iter_mut().for_each(|half| half.creep.prepare(h));
+        }
+    }
+
+    /// Moves a spring to the deflection `wanted` in m, or as far as a force of `most` holds it; gives deflection and force.
+    pub(super) fn moved(&mut self, spring: usize, wanted: [f64; 2], most: f64) -> ([f64; 2], [f64; 2]) {
+        let states = &mut self.states[spring];
+        let free = |axis: usize| -> f64 {
+            self.halves
+                .iter()
+                .zip(&states[axis])
+                .map(|(half, state)| half.creep.deformation(state, 0.0))
+                .sum()
+        };
+        let free = [free(0), free(1)];
+        let growth: f64 = self.halves.iter().map(|half| half.share * half.creep.growth()).sum();
+        let force = at_most([0, 1].map(|axis| (wanted[axis] - free[axis]) / growth), most);
+        for (axis, force) in states.iter_mut().zip(force) {
+            for (half, state) in self.halves.iter().zip(axis) {
+                half.creep.advance(state, half.share * force);
+            }
+        }
+        ([0, 1].map(|axis| free[axis] + growth * force[axis]), force)
+    }
+
+    /// Books what the springs have lost in a step.
+    pub(super) fn book(&mut self) {
+        let power = self.sum(Creep::power);
+        self.lost += 0.5 * self.step * (self.power + power);
+        self.power = power;
+    }
+
+    /// Energy that the springs store along the motion, and have lost by creeping so far, over the stiffness of a spring, m^2.
+    pub(super) fn stored(&self) -> f64 {
+        self.sum(Creep::stored)
+    }
+
+    pub(super) fn lost(&self) -> f64 {
+        self.lost
+    }
+
+    /// Sum over all springs of what `of` gives per stiffness.
+    fn sum(&self, of: impl Fn(&Creep, &Deformation) -> f64) -> f64 {
+        let along = self.states.iter().map(|[along, _]| along);
+        along
+            .flat_map(|states| self.halves.iter().zip(states))
+            .map(|(half, state)| of(&half.creep, state) / half.share)
+            .sum()
+    }
+}
