@@ -279,7 +279,7 @@ impl DentedContact {
         };
         let recovers = radius * unit * mean(&recovers);
         Pressed {
-            press: Press { force, radius, evenness: even.evenness },
+            press: Press { force, radius, evenness: even.evenness, curvature: unit * even.bends() / radius },
             recovers,
             stored: force * recovers / (1.0 + mean(&Flattened::exponent)),
             now,

@@ -66,7 +66,7 @@ impl Hertz {
 
     /// The contact under `force` N.
     pub fn press(&self, force: f64) -> Press {
-        Press { force, radius: self.contact_radius(force), evenness: 0.0 }
+        Press { force, radius: self.contact_radius(force), evenness: 0.0, curvature: self.tip_radius.recip() }
     }
 
     /// Pressure at the patch's centre in Pa under `force` N: 3 F / (2 pi a^2); 0 without force.

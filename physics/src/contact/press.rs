@@ -11,6 +11,8 @@ pub struct Press {
     pub radius: f64,
     /// From Hertz's distribution of the pressure, 0, to an even one, 1.
     pub evenness: f64,
+    /// Curvature that the surfaces have lost and spring back to without the force, 1/m.
+    pub curvature: f64,
 }
 
 impl Press {
@@ -21,6 +23,7 @@ impl Press {
             force: mix(self.force, next.force),
             radius: mix(self.radius.powi(3), next.radius.powi(3)).cbrt(),
             evenness: mix(self.evenness, next.evenness),
+            curvature: mix(self.curvature, next.curvature),
         }
     }
 
@@ -30,11 +33,6 @@ impl Press {
         let left = 1.0 - (place / self.radius).powi(2);
         let [hertz, even] = [0.75 * left, 2.0 / PI * left.sqrt()];
         self.force / self.radius * (hertz + self.evenness * (even - hertz))
-    }
-
-    /// Curvature in 1/m that a contact of surfaces with the modulus `modulus` = E* in Pa loses elastically under this force, if Hertz's.
-    pub fn curvature(&self, modulus: f64) -> f64 {
-        0.75 * self.force / (modulus * self.radius.powi(3))
     }
 }
 
@@ -47,7 +45,7 @@ mod tests {
     #[test]
     fn the_springs_bear_the_force() {
         for evenness in [0.0, 0.4, 1.0] {
-            let press = Press { force: 7.0, radius: 2e-4, evenness };
+            let press = Press { force: 7.0, radius: 2e-4, evenness, curvature: 0.0 };
             let count = 100_000;
             let width = 2.0 * press.radius / f64::from(count);
             let place = |k: u32| (f64::from(k) + 0.5) * width - press.radius;

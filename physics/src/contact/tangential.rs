@@ -16,8 +16,8 @@
 mod creeping;
 
 use self::creeping::CreepingSprings;
+use super::Press;
 use super::radial_slip::{dundurs_beta, parted};
-use super::{Hertz, Press};
 use crate::material::Material;
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -30,8 +30,7 @@ static BOTH_WAYS: [[f64; 2]; 2] = [[FRAC_1_SQRT_2, FRAC_1_SQRT_2], [-FRAC_1_SQRT
 /// A contact under a changing normal force, whose surfaces move along each other.
 #[derive(Debug, Clone)]
 pub struct TangentialContact {
-    /// E* in Pa of the contact if Hertz's, and stiffness of the row of springs along the surfaces, N/m^2.
-    modulus: f64,
+    /// Stiffness of the row of springs along the surfaces, N/m^2.
     tangential: f64,
     /// Dundurs' beta: by it Hertz's pressure moves both surfaces apart radially.
     beta: f64,
@@ -61,8 +60,8 @@ struct SpringStep {
 }
 
 impl TangentialContact {
-    /// Of a tip and a face of these materials, elastic ones by `law`, with a coefficient of `friction`, with at most the contact radius `widest` m.
-    pub fn new(law: Hertz, [tip, face]: [&Material; 2], friction: f64, widest: f64) -> Self {
+    /// Of a tip and a face of these materials with a coefficient of `friction`, and at most the contact radius `widest` m.
+    pub fn new([tip, face]: [&Material; 2], friction: f64, widest: f64) -> Self {
         // Mindlin's stiffness 8 a/((2 - nu)/G + ...), over the length 2 a
         let compliance = |of: &Material| 0.25 * (2.0 - of.poisson_ratio) / of.shear_modulus();
         let compliances = [tip, face].map(compliance);
@@ -71,7 +70,6 @@ impl TangentialContact {
         let directions: &[[f64; 2]] = if beta == 0.0 { &ONE_WAY } else { &BOTH_WAYS };
         let springs = SPRINGS / directions.len();
         Self {
-            modulus: 0.75 * law.stiffness / law.tip_radius.sqrt(),
             tangential: 1.0 / whole,
             beta,
             friction,
@@ -144,7 +142,7 @@ impl TangentialContact {
         let share = if touched { 1.0 } else { (press.radius - place) / (press.radius - self.press.radius) };
         let parted = |press: &Press| match self.beta {
             0.0 => 0.0,
-            beta => parted(beta, place, press.radius) * press.curvature(self.modulus),
+            beta => parted(beta, place, press.radius) * press.curvature,
         };
         let before = if touched { parted(&self.press) } else { 0.0 };
         SpringStep {

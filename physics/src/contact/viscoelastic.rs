@@ -135,7 +135,7 @@ impl ViscoelasticContact {
             self.springs.push(Default::default());
         }
         let compliance = self.compliance();
-        self.press = Press { radius: self.radius(x), ..Press::default() };
+        self.press = Press { radius: self.radius(x), curvature: self.tip_radius.recip(), ..Press::default() };
         for k in 0..self.springs.len() {
             let [force, _] = self.spring(k, compliance, self.pressed(k, x));
             self.press.force += sides(k) * force;

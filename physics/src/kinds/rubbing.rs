@@ -211,11 +211,11 @@ impl Rubbing<'_> {
         };
         let frictions = self.frictions();
         let contact = |i: usize| {
-            let (law, materials) = self.contacts[i];
+            let (_, materials) = self.contacts[i];
             let widest = presses[i].iter().map(|press| press.radius).fold(0.0, f64::max);
             // surfaces that do not move along each other stay so, unless a plate between moves them
             let moves = velocity[i] != 0.0 || !modes.is_empty();
-            (moves && widest > 0.0).then(|| TangentialContact::new(law, materials, frictions[i], widest))
+            (moves && widest > 0.0).then(|| TangentialContact::new(materials, frictions[i], widest))
         };
         Ok(Sliding { contacts: [contact(0), contact(1)], mobility, modes, velocity }.slide(time, &presses))
     }

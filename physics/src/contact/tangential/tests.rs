@@ -1,6 +1,7 @@
 //! The springs along the surfaces against closed forms.
 
 use super::*;
+use crate::contact::Hertz;
 use crate::material::Relaxation;
 use approx::assert_relative_eq;
 
@@ -15,8 +16,7 @@ fn law() -> Hertz {
 fn contact(friction: f64) -> TangentialContact {
     let steel = Material::elastic("steel", 210e9, 0.3, 7800.0);
     let law = law();
-    let mut contact =
-        TangentialContact::new(law, [&steel, &steel], friction, law.contact_radius(NORMAL_FORCE));
+    let mut contact = TangentialContact::new([&steel, &steel], friction, law.contact_radius(NORMAL_FORCE));
     contact.advance(law.press(NORMAL_FORCE), 0.0, 0.0);
     contact
 }
@@ -109,9 +109,8 @@ fn what_sticks_relaxes_as_the_material_does() {
         relaxation: vec![Relaxation { ratio: 0.4, time: 3e-5 }],
         ..Material::elastic("polymer", 2.6e9, 0.38, 1320.0)
     };
-    let press = Press { force: NORMAL_FORCE, radius: 2e-4, evenness: 0.0 };
-    let law = Hertz::new(3e-3, &polymer, &polymer);
-    let mut contact = TangentialContact::new(law, [&polymer, &polymer], 1e6, press.radius);
+    let press = Press { force: NORMAL_FORCE, radius: 2e-4, ..Press::default() };
+    let mut contact = TangentialContact::new([&polymer, &polymer], 1e6, press.radius);
     // the surfaces touch, and move at once
     contact.advance(press, 0.0, 1e-9);
     contact.advance(press, 1e-7, 1e-9);

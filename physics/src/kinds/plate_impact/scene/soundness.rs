@@ -42,7 +42,8 @@ impl Bodies for PlateImpact {
             let yields = body.plasticity().or(plate.material.plasticity()).is_some();
             !(yields && !(body.relaxation.is_empty() && plate.material.relaxation.is_empty()))
         };
-        let dry = self.fluid.is_none() && plate.damping_ratio == 0.0 && self.series.is_none();
+        let single = self.fluid.is_none() && self.series.is_none();
+        let dry = single && plate.damping_ratio == 0.0;
         let turn = (self.outer.shape.is_mounted() || self.outer.turning.has_inertia(&self.outer.shape))
             && self.inner.turning.has_inertia(&self.inner.shape);
         let straight = self.outer.is_centred() && !self.spins();
@@ -59,10 +60,16 @@ impl Bodies for PlateImpact {
                 help: "it is the distance of the point of impact from the centre of the plate",
             },
             Rule {
-                fields: vec!["outer.offset", "outer.angle"],
-                holds: self.outer.is_centred() || (elastic && dry),
-                message: "an off-centre or oblique impact needs elastic bodies, no fluid, an undamped plate and one impact".into(),
-                help: "remove `outer.offset` and `outer.angle`, or fluid, damping, `hardening`, `relaxation`, `loss_factor` and series",
+                fields: vec!["outer.offset"],
+                holds: self.outer.offset == 0.0 || (elastic && dry),
+                message: "an off-centre impact needs elastic bodies, no fluid, an undamped plate and one impact".into(),
+                help: "remove `outer.offset`, or fluid, damping, `hardening`, `relaxation`, `loss_factor` and series",
+            },
+            Rule {
+                fields: vec!["outer.angle"],
+                holds: self.outer.angle == 0.0 || single,
+                message: "an oblique impact needs one impact without a fluid".into(),
+                help: "remove `outer.angle`, or fluid and series",
             },
             Rule {
                 fields: vec!["friction"],
@@ -72,9 +79,9 @@ impl Bodies for PlateImpact {
             },
             Rule {
                 fields: vec!["outer.spin", "inner.spin"],
-                holds: !self.spins() || (elastic && dry),
-                message: "`spin` needs elastic bodies, no fluid, an undamped plate and one impact".into(),
-                help: "remove `outer.spin` and `inner.spin`, or fluid, damping, `hardening`, `relaxation`, `loss_factor` and series",
+                holds: !self.spins() || single,
+                message: "`spin` needs one impact without a fluid".into(),
+                help: "remove `outer.spin` and `inner.spin`, or fluid and series",
             },
             Rule {
                 fields: vec!["fluid"],
