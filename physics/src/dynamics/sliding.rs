@@ -3,7 +3,7 @@
 //! The normal motion is solved before: what forces along the surface do to it is left out, which on a flat, symmetric surface is nothing.
 //! Bodies, modes of what is struck and the contacts' tangential flexibility take part.
 
-use super::surface_modes::{MovingSurfaces, SurfaceForces, SurfaceMode};
+use super::surface_modes::{MovingSurfaces, SurfaceMode};
 use crate::contact::{Press, TangentialContact};
 
 /// Longest step over the inverse angular frequency of the sticking contact.
@@ -34,8 +34,8 @@ impl TurningBody {
 pub struct Sliding<'a> {
     /// Outer and inner contact; `None`: it does not exist.
     pub contacts: [Option<TangentialContact>; 2],
-    /// Relative acceleration of the bodies' surfaces per force, 1/kg. Shape (contacts, contacts).
-    pub mobility: [[f64; 2]; 2],
+    /// Relative acceleration of the bodies' surfaces at each contact per force there, 1/kg.
+    pub mobility: [f64; 2],
     /// Of what they strike, at rest at t = 0.
     pub modes: &'a [SurfaceMode],
     /// Relative velocity of the surfaces at t = 0 in m/s: of the outer and the inner body over what they touch.
@@ -51,39 +51,51 @@ pub struct Slid {
     pub dissipated: [f64; 2],
     /// Largest velocity in m/s at which the forces along the surfaces move a contact across them: what is left out.
     pub across: f64,
+    /// Estimated error of the velocities along the surfaces, over the speed; 0 if it was not looked for.
+    pub error: f64,
 }
 
 impl Sliding<'_> {
-    /// Moves the bodies while they are pressed together as `presses` has it at every `time` in s. Shapes (samples), (contacts, samples).
-    pub fn slide(mut self, time: &[f64], presses: &[Vec<Press>; 2]) -> Slid {
+    /// Moves the bodies while they are pressed together as `presses` has it at every `time` in s, in `finer` times as many steps as seem enough.
+    /// With fewer not every sample counts. Shapes (samples), (contacts, samples).
+    pub fn slide(mut self, time: &[f64], presses: &[Vec<Press>; 2], finer: f64) -> Slid {
         let mut slid = Slid::default();
         let mut velocity = self.velocity;
-        let mut surfaces = MovingSurfaces::new(self.modes);
-        let mut by_friction = surfaces.clone();
-        for k in 1..time.len() {
-            let [from, to] = [k - 1, k].map(|k| [presses[0][k], presses[1][k]]);
-            let length = time[k] - time[k - 1];
-            let count = self.steps([0, 1].map(|i| from[i].radius.max(to[i].radius)), length);
+        // their motion by the forces across them, which are known, and by those along them
+        let mut pressed = MovingSurfaces::new(self.modes);
+        let mut rubbed = pressed.clone();
+        let mut earlier = self.forces();
+        let last = time.len().saturating_sub(1);
+        let apart = finer.recip().max(1.0) as usize;
+        for start in (0..last).step_by(apart) {
+            let end = (start + apart).min(last);
+            let [from, to] = [start, end].map(|k| [presses[0][k], presses[1][k]]);
+            let length = time[end] - time[start];
+            let enough = self.steps([0, 1].map(|i| from[i].radius.max(to[i].radius)), length);
+            let count = (finer * enough).ceil();
             let h = length / count;
+            pressed.prepare(h);
+            rubbed.prepare(h);
             let mut press = from;
             for step in 1..=count as usize {
-                let across = press.map(|press| press.force);
-                let before = SurfaceForces { across, along: self.forces() };
+                let (before, across) = (self.forces(), press.map(|press| press.force));
                 press = [0, 1].map(|i| from[i].between(&to[i], step as f64 / count));
-                self.kick(&mut velocity, before.along, 0.5 * h);
-                surfaces.kick(before, 0.5 * h);
-                let moved = surfaces.drift(h);
+                self.kick(&mut velocity, before, 0.5 * h);
+                rubbed.kick(before, 0.5 * h);
+                let by_pressing = pressed.press(across, press.map(|press| press.force));
+                let by_friction = rubbed.drift();
+                // a step late, which takes a little energy
+                let yields = rubbed.yields([0, 1].map(|i| before[i] - earlier[i]));
+                earlier = before;
                 for (i, contact) in self.contacts.iter_mut().enumerate() {
-                    let step = velocity[i] * h - moved[i];
+                    let step = velocity[i] * h - by_pressing[i] - by_friction[i] - yields[i];
                     contact.iter_mut().for_each(|contact| contact.advance(press[i], step, h));
                 }
-                let after = SurfaceForces { across: press.map(|press| press.force), along: self.forces() };
-                self.kick(&mut velocity, after.along, 0.5 * h);
-                surfaces.kick(after, 0.5 * h);
-                by_friction.kick(SurfaceForces { across: [0.0; 2], ..after }, h);
-                by_friction.drift(h);
-                slid.across = slid.across.max(by_friction.speed_across());
-                (0..2).for_each(|i| slid.impulse[i] += 0.5 * h * (before.along[i] + after.along[i]));
+                let after = self.forces();
+                self.kick(&mut velocity, after, 0.5 * h);
+                rubbed.kick(after, 0.5 * h);
+                slid.across = slid.across.max(rubbed.speed_across());
+                (0..2).for_each(|i| slid.impulse[i] += 0.5 * h * (before[i] + after[i]));
             }
         }
         for (i, contact) in self.contacts.iter().enumerate() {
@@ -102,17 +114,15 @@ impl Sliding<'_> {
         let of = |i: usize| {
             let stiffness = self.contacts[i].as_ref()?.sticking_stiffness(radii[i]);
             let modes: f64 = self.modes.iter().map(|mode| mode.along[i] * mode.along[i]).sum();
-            let accurate = (stiffness * self.mobility[i][i]).sqrt() / LONGEST;
-            let stable = (stiffness * (self.mobility[i][i] + modes)).sqrt() / STABLE;
+            let accurate = (stiffness * self.mobility[i]).sqrt() / LONGEST;
+            let stable = (stiffness * (self.mobility[i] + modes)).sqrt() / STABLE;
             Some(length * accurate.max(stable))
         };
         // contacts that are open forget where they were
-        (0..2).filter_map(of).fold(0.0, f64::max).ceil().max(1.0)
+        (0..2).filter_map(of).fold(0.0, f64::max).max(1.0)
     }
 
     fn kick(&self, velocity: &mut [f64; 2], forces: [f64; 2], h: f64) {
-        for (rate, row) in velocity.iter_mut().zip(&self.mobility) {
-            *rate -= h * (row[0] * forces[0] + row[1] * forces[1]);
-        }
+        (0..2).for_each(|i| velocity[i] -= h * self.mobility[i] * forces[i]);
     }
 }

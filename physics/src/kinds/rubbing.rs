@@ -9,7 +9,6 @@ use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::kinds::impacts::SAMPLES_PER_CONTACT;
 use crate::material::Material;
-use crate::numerics::duhamel::Oscillator;
 use crate::result::Sideways;
 use crate::scene::{Inner, Outer, Plate, Shape, Turning};
 use std::borrow::Cow;
@@ -18,6 +17,10 @@ use std::borrow::Cow;
 const NOTABLE_ACROSS: f64 = 0.01;
 /// Growth of a contact's stiffness by friction from which on there is a warning where a model omits it.
 const NOTABLE_STIFFENING: f64 = 1e-3;
+
+/// Steps along the surfaces over those that seem enough, tried in turn until velocities have this error over the speed.
+const FINER: [f64; 5] = [1.0, 2.0, 4.0, 8.0, 16.0];
+const SETTLED: f64 = 5e-4;
 
 /// Law of a contact, and the materials of tip and face.
 pub(super) type Touching<'a> = (Hertz, [&'a Material; 2]);
@@ -38,12 +41,11 @@ impl StruckSurface {
         if plate.edge == crate::scene::Edge::Free {
             let (mass, arm) = (plate.mass(), 0.5 * plate.thickness);
             let inertia = mass * (0.25 * plate.radius.powi(2) + arm * arm / 3.0);
-            let free = Oscillator { omega: 0.0, alpha: 0.0 };
             let (push, turn) = (mass.sqrt().recip(), inertia.sqrt().recip());
             // along x, and about y: the outer face moves towards +x
-            rigid.push(SurfaceMode { oscillator: free, approach: [0.0; 2], along: [push; 2] });
+            rigid.push(SurfaceMode::rigid([0.0; 2], [push; 2]));
             let along = [arm * turn, -arm * turn];
-            rigid.push(SurfaceMode { oscillator: free, approach: [-offset * turn, 0.0], along });
+            rigid.push(SurfaceMode::rigid([-offset * turn, 0.0], along));
         }
         Self::elastic(rigid, system)
     }
@@ -78,19 +80,28 @@ pub(super) struct Rubbed {
     pub(super) sideways: Sideways,
     /// In both contacts, J; `None` without friction.
     pub(super) dissipated: Option<[f64; 2]>,
-    /// See [`Slid::across`], over the speed of the outer body.
+    /// See [`Slid::across`], over the speed of the outer body across what it strikes.
     across: f64,
+    /// See [`Slid::error`].
+    error: f64,
 }
 
 impl Rubbed {
     /// What the user has to know of the motion across the surfaces that friction causes.
-    pub(super) fn warning(&self) -> Option<String> {
-        (self.across > NOTABLE_ACROSS).then(|| {
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let across = (self.across > NOTABLE_ACROSS).then(|| {
             format!(
-                "friction bends or turns what is struck, which moves the contacts across the surfaces at up to {:.1} % of the speed; the models omit that",
+                "friction bends or turns what is struck, which the models omit: forces and efficiency may be wrong by about {:.1} % (velocity of the contacts across the surfaces over that of the outer body)",
                 100.0 * self.across
             )
-        })
+        });
+        let error = (self.error > SETTLED).then(|| {
+            format!(
+                "velocities along the surfaces are uncertain by {:.0e} of the speed: quick modes of what is struck are not resolved",
+                self.error
+            )
+        });
+        across.into_iter().chain(error).collect()
     }
 
     /// Energy that friction dissipates, J; `None` without friction.
@@ -137,6 +148,11 @@ pub(super) fn omitted_stiffening(
     (most > NOTABLE_STIFFENING).then(|| {
         format!("friction makes the contacts stiffer by up to {:.1} %, which the model omits", 100.0 * most)
     })
+}
+
+/// Whether bodies that move along the surfaces they meet rub on them.
+pub(super) fn rubs_along(outer: &Outer, inner: Option<&Inner>) -> bool {
+    moves_along(outer, inner) && frictions(outer, inner).iter().any(|friction| *friction > 0.0)
 }
 
 impl Rubbing<'_> {
@@ -187,7 +203,8 @@ impl Rubbing<'_> {
                 inner_spin_final: self.inner.map(|_| spins[1] + pushed * per_inertia(inner)),
             },
             dissipated: slid.map(|slid| slid.dissipated),
-            across: slid.map_or(0.0, |slid| slid.across / self.outer.speed),
+            across: slid.map_or(0.0, |slid| slid.across / self.outer.normal_speed()),
+            error: slid.map_or(0.0, |slid| slid.error),
         }))
     }
 
@@ -204,10 +221,8 @@ impl Rubbing<'_> {
         let surfaces = [along - spins[0] * arms[0], spins[1] * arms[1]];
         let [first, second] = mobilities;
         let (mobility, velocity, modes) = match &self.struck {
-            StruckSurface::OtherBody => {
-                ([[first + second, 0.0], [0.0; 2]], [surfaces[0] - surfaces[1], 0.0], &[][..])
-            }
-            StruckSurface::Moving(modes) => ([[first, 0.0], [0.0, second]], surfaces, &modes[..]),
+            StruckSurface::OtherBody => ([first + second, 0.0], [surfaces[0] - surfaces[1], 0.0], &[][..]),
+            StruckSurface::Moving(modes) => (mobilities, surfaces, &modes[..]),
         };
         let frictions = self.frictions();
         let contact = |i: usize| {
@@ -217,7 +232,26 @@ impl Rubbing<'_> {
             let moves = velocity[i] != 0.0 || !modes.is_empty();
             (moves && widest > 0.0).then(|| TangentialContact::new(materials, frictions[i], widest))
         };
-        Ok(Sliding { contacts: [contact(0), contact(1)], mobility, modes, velocity }.slide(time, &presses))
+        let slide = |finer: f64| {
+            Sliding { contacts: [contact(0), contact(1)], mobility, modes, velocity }
+                .slide(time, &presses, finer)
+        };
+        if modes.is_empty() {
+            return Ok(slide(1.0));
+        }
+        // quick modes are not resolved: whether that matters shows in twice as many steps
+        let mut coarse = slide(0.5);
+        for finer in FINER {
+            let fine = slide(finer);
+            let change =
+                |i: usize| mobility[i] * (fine.impulse[i] - coarse.impulse[i]).abs() / self.outer.speed;
+            let error = change(0).max(change(1)) / 3.0;
+            coarse = Slid { error, ..fine };
+            if error <= SETTLED {
+                break;
+            }
+        }
+        Ok(coarse)
     }
 
     /// Times in s, and how both contacts are pressed then.

@@ -60,8 +60,13 @@ mod tests {
         let fixed: Vec<bool> = mesh.points.iter().map(|p| p.z == 0.0).collect();
         let at = SurfacePoint { point: Vector3::new(0.125, 0.125, LENGTHS[2]), normal: Vector3::z() };
         let materials = CellMaterials { materials: materials.to_vec(), of_cell };
-        StruckSolid::new(&mesh, &materials, &fixed, &[StruckPoint { at, circles: [0.06, 0.08, 0.1] }])
-            .expect("a bar")
+        StruckSolid::new(
+            &mesh,
+            &materials,
+            &fixed,
+            &[StruckPoint { at, circles: [0.06, 0.08, 0.1], rubs: false }],
+        )
+        .expect("a bar")
     }
 
     #[test]

@@ -144,6 +144,7 @@ impl ContactInfo {
         StruckPoint {
             at: SurfacePoint { point: Vector3::from(self.point), normal: Vector3::from(self.normal) },
             circles: CIRCLES.map(|circle| scale * circle * self.element_size),
+            rubs: false,
         }
     }
 

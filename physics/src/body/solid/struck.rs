@@ -32,6 +32,8 @@ pub struct StruckPoint {
     pub at: SurfacePoint,
     /// Radii of the circles in m, ascending.
     pub circles: [f64; 3],
+    /// Whether friction acts along the surface too: the modes then follow that force as well.
+    pub rubs: bool,
 }
 
 /// A body reduced to what its contacts see, its first material of Young's modulus 1 Pa and density 1 kg/m^3; [`StruckSolid::of_material`]
@@ -128,6 +130,11 @@ impl StruckSolid {
                     start.push(u);
                 }
             }
+        }
+        for (k, point) in points.iter().enumerate().filter(|(_, point)| point.rubs) {
+            let mut u = statics.force(&loads[k][MIDDLE], point.at.along());
+            statics.solve(&mut u);
+            start.push(u);
         }
         let (omega, shapes) = statics.ritz(start)?;
         body.omega = omega;

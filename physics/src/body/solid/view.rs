@@ -156,8 +156,13 @@ mod tests {
         assert!(stress.iter().all(|stress| (stress - 1e-3).abs() < 1e-15), "{stress:?}");
         let fixed: Vec<bool> = mesh.points.iter().map(|p| p.x == 0.0).collect();
         let at = SurfacePoint { point: Vector3::new(2.0, 0.5, 0.5), normal: Vector3::x() };
-        let view =
-            BodyView::new(&mesh, &steel, &fixed, &[StruckPoint { at, circles: [0.2, 0.3, 0.4] }]).unwrap();
+        let view = BodyView::new(
+            &mesh,
+            &steel,
+            &fixed,
+            &[StruckPoint { at, circles: [0.2, 0.3, 0.4], rubs: false }],
+        )
+        .unwrap();
         // the long edges consist of four pieces each, the short ones of two
         assert_eq!(view.edges.len(), 4 * 4 + 8 * 2);
         assert_eq!(view.triangles.len(), 4 * mesh.outer_faces().len());

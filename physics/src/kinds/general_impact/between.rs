@@ -13,7 +13,7 @@ use crate::dynamics::surface_modes::SurfaceMode;
 use crate::dynamics::system::{PLATE, System};
 use crate::error::Result;
 use crate::kinds::plate_impact;
-use crate::numerics::duhamel::Oscillator;
+use crate::kinds::rubbing::rubs_along;
 use crate::result::limit::SMALL_DEFLECTION;
 use crate::scene::{DEFAULT_MODES, Edge, Inner, Material, Outer, Plate, Shape};
 use nalgebra::Vector3;
@@ -85,12 +85,7 @@ impl Between {
         };
         let (own, other) = elastic.modal(body, patch);
         let solid = elastic.own.of_material(body.materials.named(None));
-        let free = Oscillator { omega: 0.0, alpha: 0.0 };
-        let rigid = solid.rigid_motions.iter().map(|[approach, along]| SurfaceMode {
-            oscillator: free,
-            approach: *approach,
-            along: *along,
-        });
+        let rigid = solid.rigid_motions.iter().map(|[approach, along]| SurfaceMode::rigid(*approach, *along));
         let rigid = rigid.collect();
         let system = System { along: solid.along, ..join(own) };
         let normals: Vec<Vector3<f64>> = elastic.contacts.iter().map(|c| Vector3::from(c.normal)).collect();
@@ -106,7 +101,7 @@ impl Between {
             alignment: normals.get(1).map_or(0.0, |inner| -normals[0].dot(inner)),
             free_mass: (!elastic.own.rigid.is_empty()).then_some(solid.mass),
             rigid,
-            fewer: 2 * DROPPED * elastic.contacts.len(),
+            fewer: 2 * DROPPED * elastic.contacts.len() * if elastic.rubs { 2 } else { 1 },
             warnings,
         };
         Ok((system, between))
@@ -167,13 +162,16 @@ pub(in crate::kinds) fn off_centre_plate(
     inner: &Inner,
 ) -> Result<(System, Option<OnOtherMesh<System>>, Vec<String>)> {
     let body = Body::of_plate(plate, outer.offset);
-    let elastic = ElasticBody::new(&body)?;
+    let elastic = ElasticBody::new(&body, rubs_along(outer, Some(inner)))?;
     let (mut system, between) =
         Between::joined(elastic, &body, MovingBody::outer(outer)?, outer, Some(inner))?;
     // the plate is observed at its centre, under the inner body
     let inner: Vec<f64> = system.approach[1][PLATE..].iter().map(|approach| -approach).collect();
     system.centre[PLATE..].copy_from_slice(&inner);
     system.local_centre = system.local_centre.off_centre();
+    // as of every plate, whether or not the contacts excite it
+    let omega = system.elastic().map(|k| system.oscillators[k].omega).fold(f64::INFINITY, f64::min);
+    system.first_frequency = omega / (2.0 * std::f64::consts::PI);
     Ok((system, between.other, between.warnings))
 }
 

@@ -60,17 +60,19 @@ pub(super) struct ElasticBody {
     pub(super) contacts: Vec<ContactInfo>,
     /// What the user has to know of them.
     pub(super) warnings: Vec<String>,
+    /// Whether its modes follow friction too.
+    pub(super) rubs: bool,
 }
 
-/// What a reduced body depends on: the key of its mesh, and its materials without a common factor on Young's moduli and densities, which
-/// scales it.
-type ReducedKey = (String, Vec<[f64; 3]>);
+/// What a reduced body depends on: the key of its mesh, its materials without a common factor on Young's moduli and densities, which
+/// scales it, and whether friction acts.
+type ReducedKey = (String, Vec<[f64; 3]>, bool);
 
 /// Bodies that this process has reduced: a sweep over speeds, masses and moduli needs one.
 static REDUCED: LazyLock<MemoList<(ReducedKey, ElasticBody)>> = LazyLock::new(MemoList::default);
 
-fn reduced_key(body: &Body) -> ReducedKey {
-    (body.mesh_request(1.0).key, ratios(body))
+fn reduced_key(body: &Body, rubs: bool) -> ReducedKey {
+    (body.mesh_request(1.0).key, ratios(body), rubs)
 }
 
 /// The meshes that `body` is reduced on: its own, and another one for the error by the mesh.
@@ -79,26 +81,27 @@ pub(super) fn mesh_requests(body: &Body) -> Vec<MeshRequest> {
 }
 
 impl ElasticBody {
-    /// Of `body`.
+    /// Of `body`, on which friction acts if it `rubs`.
     ///
     /// # Errors
     /// Those of the mesher, [`Error::Solver`] for a mesh that is of no use.
-    pub(super) fn new(body: &Body) -> Result<Self> {
-        let key = reduced_key(body);
-        let found = REDUCED.find_or(|(own, _)| *own == key, || Ok((key.clone(), Self::build(body)?)))?;
+    pub(super) fn new(body: &Body, rubs: bool) -> Result<Self> {
+        let key = reduced_key(body, rubs);
+        let found =
+            REDUCED.find_or(|(own, _)| *own == key, || Ok((key.clone(), Self::build(body, rubs)?)))?;
         Ok(found.1.clone())
     }
 
     /// The same if this process has reduced it.
-    pub(super) fn known(body: &Body) -> Option<Self> {
-        let key = reduced_key(body);
+    pub(super) fn known(body: &Body, rubs: bool) -> Option<Self> {
+        let key = reduced_key(body, rubs);
         REDUCED.all().iter().find(|entry| entry.0 == key).map(|entry| entry.1.clone())
     }
 
-    fn build(body: &Body) -> Result<Self> {
+    fn build(body: &Body, rubs: bool) -> Result<Self> {
         let path = mesh(&body.mesh_request(1.0))?;
         let contacts = BodyMesh::contacts(&path)?;
-        let own = reduced(body, &path, &contacts)?;
+        let own = reduced(body, &path, &contacts, rubs)?;
         let mut warnings = Vec::new();
         let is_cad = body.file.extension().is_some_and(|e| CAD.iter().any(|cad| e.eq_ignore_ascii_case(cad)));
         if body.unit.is_none() && !is_cad {
@@ -110,7 +113,7 @@ impl ElasticBody {
         let other = mesh(&body.mesh_request(COARSER))
             .and_then(|path| {
                 let share = if BodyMesh::size_factor(&path)? > 1.0 { OF_COARSER } else { OF_FINER };
-                Ok(OnOtherMesh { found: reduced(body, &path, &BodyMesh::contacts(&path)?)?, share })
+                Ok(OnOtherMesh { found: reduced(body, &path, &BodyMesh::contacts(&path)?, rubs)?, share })
             })
             .map_err(|why| {
                 warnings.push(format!(
@@ -139,7 +142,7 @@ impl ElasticBody {
                 ));
             }
         }
-        Ok(Self { own, other, contacts, warnings })
+        Ok(Self { own, other, contacts, warnings, rubs })
     }
 
     /// The sphere that stands for a body with the tip radius `tip` in m at contact `k`.
@@ -255,8 +258,9 @@ pub(super) fn view(body: &Body) -> Result<(BodyView, Vec<ContactInfo>)> {
 }
 
 /// The body on the mesh at `path`, from the cache or computed.
-fn reduced(body: &Body, path: &Path, contacts: &[ContactInfo]) -> Result<StruckSolid> {
-    let points: Vec<_> = contacts.iter().map(ContactInfo::struck).collect();
+fn reduced(body: &Body, path: &Path, contacts: &[ContactInfo], rubs: bool) -> Result<StruckSolid> {
+    let struck = |contact: &ContactInfo| StruckPoint { rubs, ..contact.struck() };
+    let points: Vec<_> = contacts.iter().map(struck).collect();
     let of = json!({ "struck": places(&points), "materials": ratios(body) });
     cached(path, of, || {
         let (BodyMesh { mesh, fixed, .. }, materials) = read(body, path)?;
@@ -288,7 +292,11 @@ fn ratios(body: &Body) -> Vec<[f64; 3]> {
 
 fn places(points: &[StruckPoint]) -> Vec<serde_json::Value> {
     let place = |point: &StruckPoint| {
-        json!([<[f64; 3]>::from(point.at.point), <[f64; 3]>::from(point.at.normal), point.circles])
+        let [place, normal] = [point.at.point, point.at.normal].map(<[f64; 3]>::from);
+        match point.rubs {
+            true => json!([place, normal, point.circles, "rubs"]),
+            false => json!([place, normal, point.circles]),
+        }
     };
     points.iter().map(place).collect()
 }

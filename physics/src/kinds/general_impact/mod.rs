@@ -105,7 +105,7 @@ pub fn body_view(scene: &Scene) -> Result<Option<(BodyView, Vec<ContactInfo>)>> 
 
 /// The elastic contacts: whose, their laws, with the area of an ellipse where there is one, and the materials that meet.
 fn contact_laws(setup: &GeneralImpact) -> Vec<(&'static str, Hertz, Vec<&Material>)> {
-    let elastic = setup.body().and_then(ElasticBody::known);
+    let elastic = setup.body().and_then(|body| ElasticBody::known(body, setup.rubs_along()));
     let face = setup.face();
     let faces = setup
         .body()

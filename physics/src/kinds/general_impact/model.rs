@@ -64,7 +64,7 @@ impl ContactModel {
         let system = match (&setup.struck, &setup.inner) {
             (Some(Struck::Wall(_)), _) => System::on_wall(outer, &face),
             (Some(Struck::Body(body)), inner) => {
-                let elastic = ElasticBody::new(body)?;
+                let elastic = ElasticBody::new(body, given.rubs_along())?;
                 faces = elastic.faces(body).map(Material::clone);
                 let (system, found) = Between::joined(elastic, body, outer, &setup.outer, inner.as_ref())?;
                 between = Some(found);
@@ -133,7 +133,10 @@ impl ContactModel {
 
     /// What `of` makes of the impacts.
     fn with_impacts<R>(&self, of: impl FnOnce(Impacts) -> R) -> R {
-        let values = |_: &System, result: &Integration| self.table(result);
+        let values = |_: &System, result: &Integration| {
+            let rubbed = self.rubbed(result).ok().flatten();
+            self.of_all_motion(self.table(result), rubbed.as_ref())
+        };
         of(Impacts {
             system: &self.system,
             fluid: None,
@@ -263,7 +266,7 @@ impl ContactModel {
             "the law of plastic contacts takes the inner body's tip as flat and the outer one's as more curved instead".into()
         }));
         let rubbed = self.rubbed(result)?;
-        warnings.extend(rubbed.as_ref().and_then(Rubbed::warning));
+        warnings.extend(rubbed.iter().flat_map(Rubbed::warnings));
         let table = self.of_all_motion(self.table(result), rubbed.as_ref());
         let is_omitted = self.rubbing()?.is_none();
         if is_omitted && self.scene.general_impact()?.moves_along() {

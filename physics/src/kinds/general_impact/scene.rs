@@ -112,6 +112,11 @@ impl GeneralImpact {
             || self.body().is_some() && self.rubs() && self.has_inertia()
     }
 
+    /// Whether they rub while they do.
+    pub fn rubs_along(&self) -> bool {
+        self.moves_along() && self.rubs()
+    }
+
     /// Whether a body rubs on what it touches.
     pub fn rubs(&self) -> bool {
         let inner = self.inner.as_ref().map(|inner| inner.turning.friction);

@@ -57,7 +57,8 @@ fn struck(
     };
     let solid =
         StruckSolid::new(&mesh, &CellMaterials::one(steel()), &fixed, &[contact.struck()]).expect("solid");
-    let elastic = ElasticBody { own: solid, other: None, contacts: vec![contact], warnings: Vec::new() };
+    let elastic =
+        ElasticBody { own: solid, other: None, contacts: vec![contact], warnings: Vec::new(), rubs: false };
     let body = Body {
         file: "block.msh".into(),
         content: String::new(),
@@ -218,7 +219,7 @@ fn a_contact_that_the_body_can_not_feel_is_refused() {
             &mesh,
             &CellMaterials::one(steel()),
             &fixed,
-            &[StruckPoint { at, circles: [0.15, 0.2, 0.3] }],
+            &[StruckPoint { at, circles: [0.15, 0.2, 0.3], rubs: false }],
         )
     };
     let held = refused([0.5; 2], |z| z > 0.49).expect_err("held").to_string();

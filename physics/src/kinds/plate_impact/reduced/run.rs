@@ -314,7 +314,7 @@ impl Reduced {
             format!("the plate's mesh changes forces or efficiency by about {:.1} %", 100.0 * error)
         }));
         let rubbed = self.rubbed(result)?;
-        warnings.extend(rubbed.as_ref().and_then(Rubbed::warning));
+        warnings.extend(rubbed.iter().flat_map(Rubbed::warnings));
         if self.memory.is_some() {
             warnings.extend(omitted_stiffening(self.touching(setup), &setup.outer, Some(&setup.inner)));
         }
