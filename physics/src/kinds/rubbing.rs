@@ -4,7 +4,7 @@ use crate::contact::{Hertz, Press, TangentialContact};
 use crate::dynamics::StopReason;
 use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::sliding::{Slid, Sliding, TurningBody};
-use crate::dynamics::surface_modes::SurfaceMode;
+use crate::dynamics::surface_modes::{MovingSurfaces, SurfaceMode};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::kinds::impacts::SAMPLES_PER_CONTACT;
@@ -15,6 +15,8 @@ use std::borrow::Cow;
 
 /// Velocity across the surfaces by forces along them, over the speed, from which on there is a warning.
 const NOTABLE_ACROSS: f64 = 0.01;
+/// The same of velocities at a right angle to the direction in which friction is taken.
+const NOTABLE_ASIDE: f64 = 0.01;
 /// Growth of a contact's stiffness by friction from which on there is a warning where a model omits it.
 const NOTABLE_STIFFENING: f64 = 1e-3;
 
@@ -52,13 +54,7 @@ impl StruckSurface {
 
     /// Of an elastic body in `system` with these `rigid` motions.
     pub(super) fn elastic(rigid: Vec<SurfaceMode>, system: &System) -> Self {
-        let mut modes = rigid;
-        modes.extend(system.along.iter().zip(system.elastic()).map(|(along, k)| SurfaceMode {
-            oscillator: system.oscillators[k],
-            approach: [system.approach[0][k], system.approach[1][k]],
-            along: *along,
-        }));
-        Self::Moving(modes)
+        Self::Moving(surface_modes(rigid, &system.along, system))
     }
 
     /// Whether elastic modes move it along itself.
@@ -67,11 +63,27 @@ impl StruckSurface {
     }
 }
 
+/// `rigid` motions and the elastic modes of `system`, which move the surfaces at both contacts by `along` per unit.
+pub(super) fn surface_modes(
+    rigid: Vec<SurfaceMode>,
+    along: &[[f64; 2]],
+    system: &System,
+) -> Vec<SurfaceMode> {
+    let elastic = along.iter().zip(system.elastic()).map(|(along, k)| SurfaceMode {
+        oscillator: system.oscillators[k],
+        approach: [system.approach[0][k], system.approach[1][k]],
+        along: *along,
+    });
+    rigid.into_iter().chain(elastic).collect()
+}
+
 /// Bodies, and what they touch.
 pub(super) struct Rubbing<'a> {
     pub(super) outer: &'a Outer,
     pub(super) inner: Option<&'a Inner>,
     pub(super) struck: StruckSurface,
+    /// Modes that move its surfaces at a right angle to the x direction, which are left out; none of a plate or a wall.
+    pub(super) aside: &'a [SurfaceMode],
     pub(super) contacts: [Touching<'a>; 2],
 }
 
@@ -84,6 +96,8 @@ pub(super) struct Rubbed {
     across: f64,
     /// See [`Slid::error`].
     error: f64,
+    /// Largest speed of the struck surfaces at a right angle to x, where there is friction, over that of the outer body.
+    aside: f64,
 }
 
 impl Rubbed {
@@ -101,7 +115,13 @@ impl Rubbed {
                 self.error
             )
         });
-        across.into_iter().chain(error).collect()
+        let aside = (self.aside > NOTABLE_ASIDE).then(|| {
+            format!(
+                "the surfaces of the body also move at a right angle to x, at up to {:.1} % of the speed, where the models omit friction: turn the body about z so that they move along x",
+                100.0 * self.aside
+            )
+        });
+        across.into_iter().chain(error).chain(aside).collect()
     }
 
     /// Energy that friction dissipates, J; `None` without friction.
@@ -205,6 +225,7 @@ impl Rubbing<'_> {
             dissipated: slid.map(|slid| slid.dissipated),
             across: slid.map_or(0.0, |slid| slid.across / self.outer.normal_speed()),
             error: slid.map_or(0.0, |slid| slid.error),
+            aside: self.speed_aside(result)? / self.outer.speed,
         }))
     }
 
@@ -252,6 +273,26 @@ impl Rubbing<'_> {
             }
         }
         Ok(coarse)
+    }
+
+    /// Largest speed in m/s at which what is struck moves its rubbing surfaces at a right angle to x.
+    fn speed_aside(&self, result: &Integration) -> Result<f64> {
+        if self.aside.is_empty() || !self.has_friction() {
+            return Ok(0.0);
+        }
+        let (time, presses) = self.presses(result)?;
+        let mut surfaces = MovingSurfaces::new(self.aside);
+        let mut most = 0.0_f64;
+        for k in 1..time.len() {
+            let [from, to] = [k - 1, k].map(|k| [presses[0][k].force, presses[1][k].force]);
+            let length = time[k] - time[k - 1];
+            surfaces.prepare(length);
+            let moved = surfaces.press(from, to);
+            // a surface that nothing presses does not rub
+            let rubs = |i: usize| self.frictions()[i] > 0.0 && to[i] > 0.0;
+            most = (0..2).filter(|i| rubs(*i)).map(|i| moved[i].abs() / length).fold(most, f64::max);
+        }
+        Ok(most)
     }
 
     /// Times in s, and how both contacts are pressed then.

@@ -28,6 +28,11 @@ impl SurfacePoint {
         let along = within(Vector3::x());
         if along.norm() > ACROSS { along.normalize() } else { within(Vector3::y()).normalize() }
     }
+
+    /// The direction along the surface at a right angle to [`Self::along`]. Of length 1.
+    pub fn aside(&self) -> Vector3<f64> {
+        self.normal.cross(&self.along())
+    }
 }
 
 /// A unit force along the normal, spread as 3/(2 pi b^2) sqrt(1 - (r/b)^2) over a circle of the radius b (Johnson, Contact Mechanics, 1985,

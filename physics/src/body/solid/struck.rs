@@ -12,6 +12,7 @@ use crate::body::continuum::lanczos::lowest_modes;
 use crate::error::{Error, Result};
 use crate::numerics::vectors::dot;
 use crate::scene::Material;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Circles on which each contact is solved, in element sizes: smaller ones feel the mesh, larger ones the body's own shape.
@@ -48,10 +49,12 @@ pub struct StruckSolid {
     pub participation: Vec<[[f64; 3]; 2]>,
     /// Displacements along the surface in the direction [`SurfacePoint::along`], kg^(-1/2). Shape (n, 2).
     pub along: Vec<[f64; 2]>,
+    /// The same in the direction [`SurfacePoint::aside`].
+    pub aside: Vec<[f64; 2]>,
     /// Displacements along the normals of rigid motions, of which the contacts see two at most. Shape (r, 2).
     pub rigid: Vec<[f64; 2]>,
-    /// Displacements of all rigid motions: along the normals, and along the surface. Shape (6, 2, 2), none of a held body.
-    pub rigid_motions: Vec<[[f64; 2]; 2]>,
+    /// Displacements of all rigid motions: along the normals, along the surface, and aside. Shape (6, 3, 2), none of a held body.
+    pub rigid_motions: Vec<[[f64; 2]; 3]>,
     /// Displacement of each contact by its own unit force in m/N, by circle; of a free body what it deforms. Shape (2, 3).
     pub own: [[f64; 3]; 2],
     /// Displacement of contact 0 by a unit force at contact 1 in m/N. Shape (circles of 0, circles of 1).
@@ -104,11 +107,11 @@ impl StruckSolid {
         }
         let force = |k: usize, m: usize| statics.force(&loads[k][m], points[k].at.normal);
         let seen = |k: usize, m: usize, u: &[f64]| statics.seen(&loads[k][m], points[k].at.normal, u);
-        let seen_along = |k: usize, u: &[f64]| statics.seen(&loads[k][MIDDLE], points[k].at.along(), u);
         let mut body = Self {
             omega: Vec::new(),
             participation: Vec::new(),
             along: Vec::new(),
+            aside: Vec::new(),
             rigid: seen_rigid(&statics.rigid, points.len(), |k, motion| seen(k, MIDDLE, motion)),
             rigid_motions: Vec::new(),
             own: [[0.0; 3]; 2],
@@ -149,9 +152,15 @@ impl StruckSolid {
             .collect();
         let at_contacts =
             |of: &dyn Fn(usize) -> f64| [0, 1].map(|k| if k < points.len() { of(k) } else { 0.0 });
-        let along = |shape: &Vec<f64>| at_contacts(&|k| seen_along(k, shape));
-        body.along = shapes.iter().map(along).collect();
-        let rigid = |motion: &Vec<f64>| [at_contacts(&|k| seen(k, MIDDLE, motion)), along(motion)];
+        let towards = |direction: fn(&SurfacePoint) -> Vector3<f64>, shape: &Vec<f64>| {
+            at_contacts(&|k| statics.seen(&loads[k][MIDDLE], direction(&points[k].at), shape))
+        };
+        body.along = shapes.iter().map(|shape| towards(SurfacePoint::along, shape)).collect();
+        body.aside = shapes.iter().map(|shape| towards(SurfacePoint::aside, shape)).collect();
+        let rigid = |motion: &Vec<f64>| {
+            let normal = at_contacts(&|k| seen(k, MIDDLE, motion));
+            [normal, towards(SurfacePoint::along, motion), towards(SurfacePoint::aside, motion)]
+        };
         body.rigid_motions = statics.rigid.iter().map(rigid).collect();
         Ok(body)
     }
@@ -173,7 +182,7 @@ impl StruckSolid {
         body.omega.iter_mut().for_each(|omega| *omega *= (stiffer / heavier).sqrt());
         let participations = body.participation.iter_mut().flatten().flatten();
         let motions = body.rigid_motions.iter_mut().flatten();
-        let pairs = body.rigid.iter_mut().chain(&mut body.along).chain(motions);
+        let pairs = body.rigid.iter_mut().chain(&mut body.along).chain(&mut body.aside).chain(motions);
         let participations = participations.chain(pairs.flatten());
         participations.for_each(|value| *value /= heavier.sqrt());
         let flexibilities = body.own.iter_mut().flatten().chain(body.mutual.iter_mut().flatten());

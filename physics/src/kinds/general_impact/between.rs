@@ -13,7 +13,7 @@ use crate::dynamics::surface_modes::SurfaceMode;
 use crate::dynamics::system::{PLATE, System};
 use crate::error::Result;
 use crate::kinds::plate_impact;
-use crate::kinds::rubbing::rubs_along;
+use crate::kinds::rubbing::{rubs_along, surface_modes};
 use crate::result::limit::SMALL_DEFLECTION;
 use crate::scene::{DEFAULT_MODES, Edge, Inner, Material, Outer, Plate, Shape};
 use nalgebra::Vector3;
@@ -33,6 +33,8 @@ pub(super) struct Between {
     free_mass: Option<f64>,
     /// Its rigid motions, those along the surfaces too; none of a plate, which is struck at its centre.
     pub(super) rigid: Vec<SurfaceMode>,
+    /// Its motions at a right angle to these along the surfaces.
+    pub(super) aside: Vec<SurfaceMode>,
     pub(super) warnings: Vec<String>,
 }
 
@@ -85,9 +87,13 @@ impl Between {
         };
         let (own, other) = elastic.modal(body, patch);
         let solid = elastic.own.of_material(body.materials.named(None));
-        let rigid = solid.rigid_motions.iter().map(|[approach, along]| SurfaceMode::rigid(*approach, *along));
-        let rigid = rigid.collect();
+        let rigid = |along: usize| {
+            let motions = solid.rigid_motions.iter();
+            motions.map(move |motion| SurfaceMode::rigid(motion[0], motion[along])).collect::<Vec<_>>()
+        };
+        let (rigid, rigid_aside) = (rigid(1), rigid(2));
         let system = System { along: solid.along, ..join(own) };
+        let aside = surface_modes(rigid_aside, &solid.aside, &system);
         let normals: Vec<Vector3<f64>> = elastic.contacts.iter().map(|c| Vector3::from(c.normal)).collect();
         let mut warnings = elastic.warnings.clone();
         warnings.extend(elastic.patch_warnings(patch));
@@ -101,6 +107,7 @@ impl Between {
             alignment: normals.get(1).map_or(0.0, |inner| -normals[0].dot(inner)),
             free_mass: (!elastic.own.rigid.is_empty()).then_some(solid.mass),
             rigid,
+            aside,
             fewer: 2 * DROPPED * elastic.contacts.len() * if elastic.rubs { 2 } else { 1 },
             warnings,
         };
@@ -138,6 +145,7 @@ impl Between {
             fewer: system.modes / 2,
             free_mass: (plate.edge == Edge::Free).then(|| plate.mass()),
             rigid: Vec::new(),
+            aside: Vec::new(),
             warnings,
         };
         Ok((system, between))

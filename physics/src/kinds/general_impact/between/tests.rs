@@ -114,6 +114,34 @@ fn a_free_block_that_is_struck_beside_its_middle_turns() {
     assert_relative_eq!(along, 1.0 / block + 10e-3f64.powi(2) / inertia, max_relative = 1e-3);
     let across: f64 = between.rigid.iter().map(|motion| motion.along[0] * motion.approach[0]).sum();
     assert_relative_eq!(across, -4e-3 * 10e-3 / inertia, max_relative = 1e-3);
+    // along y the same arm and another one about z, but the blow does not turn it that way
+    let rigid = between.aside.iter().filter(|mode| mode.oscillator.omega == 0.0);
+    let [aside, moved] = rigid.fold([0.0; 2], |[aside, moved], motion| {
+        [aside + motion.along[0].powi(2), moved + motion.along[0] * motion.approach[0]]
+    });
+    assert_relative_eq!(aside, along + 4e-3f64.powi(2) / inertia, max_relative = 1e-3);
+    assert!(moved.abs() < 1e-3 * across.abs(), "{moved}");
+}
+
+/// The end of a rod that is held at its other end gives way sideways as a cantilever does, L^3/(3 E I) and 6 L/(5 G A), if friction acts
+/// there: forces along the rod alone do not bend it.
+#[test]
+fn a_rubbing_rod_bends_as_a_cantilever() {
+    let (side, length) = (5e-3, 40e-3);
+    let mesh = boxes([side, side, length], [4, 4, 24], 2, |p| p);
+    let fixed: Vec<bool> = mesh.points.iter().map(|p| p.z == 0.0).collect();
+    let at = SurfacePoint { point: Vector3::new(0.5 * side, 0.5 * side, length), normal: Vector3::z() };
+    let [modulus, nu, _] = STEEL;
+    let bending = length.powi(3) / (3.0 * modulus * side.powi(4) / 12.0);
+    let shear = 1.2 * length / (0.5 * modulus / (1.0 + nu) * side * side);
+    let flexibility = |rubs: bool| -> f64 {
+        let point = StruckPoint { at, circles: [1e-3, 1.4e-3, 2e-3], rubs };
+        let solid = StruckSolid::new(&mesh, &CellMaterials::one(steel()), &fixed, &[point]).expect("a rod");
+        let solid = solid.of_material(&steel());
+        solid.along.iter().zip(&solid.omega).map(|([along, _], omega)| (along / omega).powi(2)).sum()
+    };
+    assert_relative_eq!(flexibility(true), bending + shear, max_relative = 0.03);
+    assert!(flexibility(false) < 0.9 * bending, "{}", flexibility(false));
 }
 
 /// A sphere against the end of a long rod, until the echo: m s'' = -F, d' = s' - F/(rho c A), F = k d^(3/2) with the bar's wave speed c.

@@ -43,7 +43,9 @@ impl ContactModel {
         if !scene.moves_along() || surface.vibrates() && relaxes {
             return Ok(None);
         }
-        Ok(Some(Rubbing { outer, inner: inner.as_ref(), struck: surface, contacts: self.touching(scene) }))
+        let aside = self.between.as_ref().map_or(&[][..], |between| &between.aside);
+        let contacts = self.touching(scene);
+        Ok(Some(Rubbing { outer, inner: inner.as_ref(), struck: surface, aside, contacts }))
     }
 
     /// Both contacts of `scene`.

@@ -100,7 +100,7 @@ impl Reduced {
             return Ok(None);
         }
         let struck = StruckSurface::plate(plate, outer.offset, &self.system);
-        Ok(Some(Rubbing { outer, inner: Some(inner), struck, contacts: self.touching(setup) }))
+        Ok(Some(Rubbing { outer, inner: Some(inner), struck, aside: &[], contacts: self.touching(setup) }))
     }
 
     /// Both contacts of `setup`.
