@@ -48,8 +48,24 @@ def _first_period(plate: Table, material: Table) -> float:
     return 2.0 * math.pi * radius**2 / (eigenvalue * speed)
 
 
-def dry(point: Point) -> Table:
-    """A dry central impact."""
+Range = tuple[float, float]
+
+
+def dry(
+    point: Point,
+    patches: Range = (0.02, 0.6),
+    times: Range = (0.03, 3.0),
+    keeps_patch: bool = False,
+) -> Table:
+    """A dry central impact.
+
+    Args:
+        point: the coordinates.
+        patches: contact radius over the thickness, that of Hertz's impact on a half-space.
+        times: its duration over the plate's first period.
+        keeps_patch: where the body would be too small for the patch, the impact lasts longer;
+            else the patch is smaller.
+    """
     thickness = 1e-3
     plate = {
         "radius": thickness / point.log(0.02, 0.4),
@@ -75,13 +91,18 @@ def dry(point: Point) -> Table:
     modulus = 1.0 / sum(
         (1.0 - m["poisson_ratio"] ** 2) / m["youngs_modulus"] for m in materials.values()
     )
-    patch = thickness * point.log(0.02, 0.6)
-    time = point.log(0.03, 3.0) * _first_period(plate, of_plate)
-    per_patch = time**2 * 16.0 * modulus / (2.9433**2 * 20.0 * math.pi * of_bodies["density"])
+    patch = thickness * point.log(*patches)
+    time = point.log(*times) * _first_period(plate, of_plate)
+    per_square = 16.0 * modulus / (2.9433**2 * 20.0 * math.pi * of_bodies["density"])
+    per_patch = time**2 * per_square
     # a patch that is small against the radius, as Hertz's contact supposes
     steepest = point.log(0.02, STEEPEST)
     if patch > steepest * (per_patch * patch) ** (1 / 3):
-        patch = math.sqrt(steepest**3 * per_patch)
+        if keeps_patch:
+            per_patch = patch**2 / steepest**3
+            time = math.sqrt(per_patch / per_square)
+        else:
+            patch = math.sqrt(steepest**3 * per_patch)
     cube = per_patch * patch
     outer = _body(point, cube ** (1 / 3), of_bodies["density"], "bodies")
     approach = patch**2 / _tip(outer)
@@ -175,16 +196,38 @@ def yielding(point: Point) -> Table:
     return scene
 
 
-def off_centre(point: Point) -> Table:
-    """The outer body strikes away from the centre. Solid elements take spheres only."""
-    scene = _of_spheres(dry(point))
+def _of_solids(scene: Table) -> Table:
+    """For solid elements, which take spheres and undamped plates."""
+    _of_spheres(scene)
     plate = scene["plate"]
     plate.pop("damping_ratio", None)
     # model C has no form of supported plates, A and B have none of free ones
     plate["edge"] = "clamped"
+    scene["reference"]["elements_per_contact_radius"] = ELEMENTS / 4.0
+    return scene
+
+
+def off_centre(point: Point) -> Table:
+    """The outer body strikes away from the centre."""
+    scene = _of_solids(dry(point))
+    plate = scene["plate"]
     plate["radius"] = min(plate["radius"], 20.0 * plate["thickness"])
     scene["outer"]["offset"] = plate["radius"] * point.uniform(0.02, 0.6)
-    scene["reference"]["elements_per_contact_radius"] = ELEMENTS / 4.0
+    return scene
+
+
+def oblique(point: Point) -> Table:
+    """The outer body strikes at an angle, with friction; a third of them away from the centre."""
+    # small contacts take hours
+    scene = _of_solids(dry(point, (0.1, 0.6), (0.03, 0.5), keeps_patch=True))
+    plate, outer = scene["plate"], scene["outer"]
+    plate["radius"] = min(plate["radius"], 12.0 * plate["thickness"])
+    scene["friction"] = point.log(0.03, 0.6)
+    outer["angle"] = math.radians(point.uniform(5.0, 75.0))
+    # the velocity across the plate is the one drawn
+    outer["speed"] /= math.cos(outer["angle"])
+    if offset := point.some(1.0 / 3.0, lambda at: 0.02 + 0.48 * at):
+        outer["offset"] = plate["radius"] * offset
     return scene
 
 
@@ -197,6 +240,7 @@ DRAWN: dict[str, Callable[[Point], Table]] = {
     "off-centre": off_centre,
     "body": bodies.body,
     "seat": seats.seat,
+    "oblique": oblique,
 }
 """Makes a scene of a stratum."""
 FILES = {"body": bodies.write_file}

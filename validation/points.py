@@ -17,6 +17,7 @@ STRATA = {
     "off-centre": 32,
     "body": 60,
     "seat": 60,
+    "oblique": 200,
 }
 """Scenes of each stratum. New strata come last: the place is part of the seed."""
 SEED = 20261127

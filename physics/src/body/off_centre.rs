@@ -1,4 +1,4 @@
-//! Thin circular plate (Kirchhoff) that is struck beside its centre: modes with nodal diameters, too.
+//! Thin circular plate (Kirchhoff) that is struck off its centre: modes with nodal diameters, too.
 
 use super::ModalBody;
 use super::kirchhoff::UnitPlates;
@@ -106,7 +106,7 @@ mod tests {
         }
     }
 
-    /// Static deflection under the load of a clamped plate beside its centre: Michell's solution, with c = offset/radius
+    /// Static deflection under the load of a clamped plate off its centre: Michell's solution, with c = offset/radius
     /// (1 - c^2)^2 P R^2/(16 pi D) (Timoshenko & Woinowsky-Krieger, section 64); at the centre, by reciprocity,
     /// (1 - c^2 + 2 c^2 ln c) P R^2/(16 pi D) (section 19).
     #[test]

@@ -102,7 +102,8 @@ impl ContactBalance {
     /// so many s.
     #[inline(always)]
     fn turn(&mut self, place: f64, change: (f64, f64)) {
-        if change.0 * self.change.0 < 0.0 {
+        // grazes of no consequence before do not count
+        if change.0 * self.change.0 < 0.0 && self.impulse > self.negligible {
             let [(first, took), (second, takes)] = [self.change, change];
             let [before, after] = [first / took, second / takes];
             let slope = (before * takes + after * took) / (took + takes);

@@ -4,7 +4,8 @@
 use super::contact_balance::ContactBalance;
 use super::driver::StopReason;
 use super::free_flight;
-use super::system::System;
+use super::sliding::Slid;
+use super::system::{System, dot};
 use crate::contact::Press;
 use crate::result::{History, Losses};
 
@@ -103,6 +104,17 @@ pub struct Integration {
     pub history: Option<History>,
     /// How outer and inner contact are pressed at the samples of the history, if asked for and not by the law of the system.
     pub presses: Option<[Vec<Press>; 2]>,
+    /// Friction's effect on the motion across the surfaces, which is in these results; `None` where that is omitted.
+    pub friction: Option<Settled>,
+}
+
+/// How far the motion across the surfaces and that along them have settled.
+#[derive(Debug, Clone)]
+pub struct Settled {
+    /// Error of velocities over the impact speed and of force peaks, relative, by ending the rounds in which they were found in turn.
+    pub error: f64,
+    /// What friction did along the surfaces.
+    pub slid: Slid,
 }
 
 /// Impulse of a contact, over the initial momentum, below which it is not counted.
@@ -154,12 +166,14 @@ pub(super) struct Closing<'a> {
     pub(super) steps: u64,
     /// Heat in the drive of a stack in J, if it was summed up.
     pub(super) heat: Option<f64>,
+    /// Work of a load along the surfaces, J.
+    pub(super) surface_work: f64,
 }
 
 impl Closing<'_> {
     /// The results of the run with the `history` that was kept.
     pub(super) fn integration(self, history: Option<History>) -> Integration {
-        let Self { system, v, ref contacts, fluid, .. } = self;
+        let Self { system, v, ref contacts, fluid, surface_work, .. } = self;
         let velocity = system.of_bodies(v);
         let [start_q, start_v] = &system.start;
         // of a stack's circuit the coordinates have no energy each
@@ -175,7 +189,7 @@ impl Closing<'_> {
         let unaccounted = if damped {
             self.stored - contact_work + dissipated + fluid.work
         } else {
-            end + self.stored - initial + dissipated
+            end + self.stored - initial + dissipated - surface_work
         };
         let supplied = self.supplied();
         // with its heat the whole ledger of a stack can be told, without it that of the contacts alone
@@ -194,7 +208,11 @@ impl Closing<'_> {
             energy_gained: unaccounted / initial,
             momentum_residual: unexplained_momentum(system, v, contacts, &fluid) / system.initial_momentum(),
             losses: Losses {
-                plate_damping: if damped { initial - end - contact_work + fluid.work } else { 0.0 },
+                plate_damping: if damped {
+                    initial - end - contact_work + fluid.work + surface_work
+                } else {
+                    0.0
+                },
                 squeeze_film: fluid.dissipated[0],
                 drag: fluid.dissipated[1],
                 ..Losses::default()
@@ -211,6 +229,7 @@ impl Closing<'_> {
             },
             history,
             presses: None,
+            friction: None,
         }
     }
 }
@@ -248,7 +267,8 @@ pub(super) fn unexplained_momentum(
         let moved = [0, 1].map(|i| system.approach[i][k]);
         let most = moved[0].abs().max(moved[1].abs());
         let [struck, pushed] = moved.map(|moved| moved / most);
-        let momentum = v[k] / most + struck * outer.impulse + pushed * inner.impulse;
+        let along = system.surface_load.as_ref().map_or(0.0, |load| dot(&load.along[k], &load.total()));
+        let momentum = (v[k] - along) / most + struck * outer.impulse + pushed * inner.impulse;
         largest = largest.max((momentum + fluid.film_impulse).abs());
     }
     largest

@@ -15,6 +15,7 @@ use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options
 use super::recorder::Recorder;
 use super::step_bounds::{AdaptedLength, EnergyAccount, StepBounds, base_step, force_scale, momentum_scale};
 use super::step_tables::StepTables;
+use super::surface_load::Kicks;
 use super::system::{System, dot};
 use crate::error::{Error, Result};
 use crate::numerics::stages::{STAGES, Stages};
@@ -30,6 +31,8 @@ const TURN_PER_STEP: f64 = 0.1;
 const CONVERGED: f64 = 0.1;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
+/// The same of all steps at least where kicks come between them, of which they take the mean.
+const KICKED_LEVEL: i32 = 5;
 
 /// Integrates the impact.
 ///
@@ -67,6 +70,7 @@ struct DryStepper<'a> {
     /// Heat in the drive of a stack, J, if it is asked for.
     heat: Option<f64>,
     damped: bool,
+    kicks: Option<Kicks<'a>>,
 }
 
 /// `blocks` as single coordinates; the last of them may be filled up with ones at rest.
@@ -106,6 +110,7 @@ impl<'a> DryStepper<'a> {
             peak_error: options.peak_error,
             heat: options.heat.then_some(0.0),
             damped: system.is_damped(),
+            kicks: Kicks::new(system),
         }
     }
 
@@ -161,6 +166,9 @@ impl<'a> DryStepper<'a> {
                 return Err(self.stuck(solved));
             }
             self.length.limit();
+            if self.kicks.is_some() {
+                self.length.limit_to_level(KICKED_LEVEL);
+            }
             let h = self.length.length();
             let rest = self.end_time - self.time;
             let shorter = shortened.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
@@ -281,6 +289,9 @@ impl<'a> DryStepper<'a> {
         self.time += trial.h;
         self.steps += 1;
         self.course = trial;
+        if let Some(kicks) = &mut self.kicks {
+            self.course.motion += kicks.kick(self.time, self.course.h, &mut self.v);
+        }
         Ok(())
     }
 
@@ -345,6 +356,7 @@ impl<'a> DryStepper<'a> {
             fluid: FluidAccount::default(),
             steps: self.steps,
             heat: self.heat,
+            surface_work: self.kicks.map_or(0.0, |kicks| kicks.work),
         };
         closing.integration(self.recorder.map(Recorder::finish))
     }

@@ -25,6 +25,7 @@ pub mod sliding;
 mod step_bounds;
 mod step_table;
 mod step_tables;
+pub mod surface_load;
 pub mod surface_modes;
 pub mod system;
 pub mod wet;

@@ -1,6 +1,7 @@
 //! Motion along the surfaces and spin of bodies that touch with friction.
 //!
-//! The normal motion is solved before: what forces along the surface do to it is left out, which on a flat, symmetric surface is nothing.
+//! The normal motion is solved before. What forces along the surface do to it is nothing on a flat, symmetric surface; elsewhere see
+//! [`super::surface_load`].
 //! Bodies, modes of what is struck and the contacts' tangential flexibility take part.
 
 use super::surface_modes::{MovingSurfaces, SurfaceMode};
@@ -43,13 +44,15 @@ pub struct Sliding<'a> {
 }
 
 /// What friction did.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Slid {
     /// Impulses on the struck body in N s along the surface, by outer and inner body.
     pub impulse: [f64; 2],
     /// Energy dissipated in the contacts, J.
     pub dissipated: [f64; 2],
-    /// Largest velocity in m/s at which the forces along the surfaces move a contact across them: what is left out.
+    /// Impulses until each time in s.
+    pub course: Vec<(f64, [f64; 2])>,
+    /// Largest velocity in m/s at which the forces along the surfaces move a contact across them.
     pub across: f64,
     /// Estimated error of the velocities along the surfaces, over the speed; 0 if it was not looked for.
     pub error: f64,
@@ -59,7 +62,7 @@ impl Sliding<'_> {
     /// Moves the bodies while they are pressed together as `presses` has it at every `time` in s, in `finer` times as many steps as seem enough.
     /// With fewer not every sample counts. Shapes (samples), (contacts, samples).
     pub fn slide(mut self, time: &[f64], presses: &[Vec<Press>; 2], finer: f64) -> Slid {
-        let mut slid = Slid::default();
+        let mut slid = Slid { course: vec![(0.0, [0.0; 2])], ..Slid::default() };
         let mut velocity = self.velocity;
         // their motion by the forces across them, which are known, and by those along them
         let mut pressed = MovingSurfaces::new(self.modes);
@@ -97,6 +100,7 @@ impl Sliding<'_> {
                 slid.across = slid.across.max(rubbed.speed_across());
                 (0..2).for_each(|i| slid.impulse[i] += 0.5 * h * (before[i] + after[i]));
             }
+            slid.course.push((time[end], slid.impulse));
         }
         for (i, contact) in self.contacts.iter().enumerate() {
             slid.dissipated[i] = contact.as_ref().map_or(0.0, TangentialContact::dissipated);

@@ -8,6 +8,7 @@
 
 use super::centre::LocalCentre;
 use super::moving_body::MovingBody;
+use super::surface_load::SurfaceLoad;
 use crate::actuator::Stack;
 use crate::actuator::circuit::{Account, Circuit};
 use crate::analytical::hertz::HertzImpact;
@@ -106,6 +107,8 @@ pub struct System {
     pub first_frequency: f64,
     /// Number of elastic modes of the plate.
     pub modes: usize,
+    /// What forces along the surfaces do to the motion across them, where that is known from a run before.
+    pub surface_load: Option<SurfaceLoad>,
 }
 
 impl System {
@@ -181,6 +184,7 @@ impl System {
             inner_speed: inner.speed,
             first_frequency: elastic.clone().fold(f64::INFINITY, f64::min) / (2.0 * std::f64::consts::PI),
             modes: elastic.count(),
+            surface_load: None,
             oscillators: coordinates.iter().map(|c| c.oscillator).collect(),
         }
     }

@@ -9,6 +9,7 @@ use crate::dynamics::memory::{self, ForceHistory, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
+use crate::kinds::rubbing::Rubbing;
 use crate::result::{Impact, Table};
 use crate::scene::Series;
 use std::collections::BTreeMap;
@@ -32,6 +33,8 @@ pub(super) struct Impacts<'a> {
     pub(super) fluid: Option<&'a FluidForces>,
     /// What the materials remember; elastic ones nothing.
     pub(super) memory: Option<&'a Memory>,
+    /// The bodies that move along the surfaces, if they do.
+    pub(super) rubbing: Option<&'a Rubbing>,
     pub(super) series: Option<Series>,
     /// The values at the end of an integration.
     pub(super) values: &'a dyn Fn(&System, &Integration) -> Table,
@@ -78,7 +81,8 @@ impl Impacts<'_> {
         Ok(Done { last, memory: before, impacts, warnings })
     }
 
-    /// One impact, and what the materials remember after it.
+    /// One impact, and what the materials remember after it. Where bodies rub its history is that of the forces along the way, unless the
+    /// `options` request another one.
     ///
     /// # Errors
     /// As [`integrate`].
@@ -87,6 +91,7 @@ impl Impacts<'_> {
         options: &Options,
         memory: Option<&Memory>,
     ) -> Result<(Integration, Option<Memory>)> {
+        let options = &self.rubbing.map_or(*options, |rubbing| rubbing.keeping_forces(self.system, options));
         let Some(memory) = memory else { return Ok((self.elastic(options)?, None)) };
         // virgin contacts below their onset of yield are elastic ones
         if memory.is_elastic() {
@@ -99,7 +104,13 @@ impl Impacts<'_> {
     }
 
     fn elastic(&self, options: &Options) -> Result<Integration> {
-        controlled(options, self.system, |options| integrate(self.system, self.fluid, options))
+        let run = |system: &System, options: &Options| {
+            controlled(options, system, |options| integrate(system, self.fluid, options))
+        };
+        match self.rubbing {
+            None => run(self.system, options),
+            Some(rubbing) => rubbing.settled(self.system, options, run),
+        }
     }
 
     /// The elastic impact, and the course of its forces.
@@ -133,7 +144,7 @@ impl Impacts<'_> {
             let mut speed = self.system.speed;
             for _ in 0..MOST_RUNS {
                 let system = &self.system.at_speed(speed);
-                let (result, loads) = Impacts { system, ..*self }.loaded(options).ok()?;
+                let (result, loads) = Impacts { system, rubbing: None, ..*self }.loaded(options).ok()?;
                 if result.stop == StopReason::Cut {
                     return None;
                 }

@@ -1,5 +1,7 @@
 //! Bodies that strike obliquely or turn: their motion along the surfaces they touch, from the forces across them.
 
+mod settled;
+
 use crate::contact::{Hertz, Press, TangentialContact};
 use crate::dynamics::StopReason;
 use crate::dynamics::integration::{Integration, Options};
@@ -24,8 +26,11 @@ const NOTABLE_STIFFENING: f64 = 1e-3;
 const FINER: [f64; 5] = [1.0, 2.0, 4.0, 8.0, 16.0];
 const SETTLED: f64 = 5e-4;
 
+/// Times in s, and how both contacts are pressed then.
+type PressHistory<'a> = (&'a [f64], Cow<'a, [Vec<Press>; 2]>);
+
 /// Law of a contact, and the materials of tip and face.
-pub(super) type Touching<'a> = (Hertz, [&'a Material; 2]);
+pub(super) type Touching = (Hertz, [Material; 2]);
 
 /// What the outer body strikes, as far as that moves along its surface.
 #[derive(Debug, Clone)]
@@ -57,6 +62,11 @@ impl StruckSurface {
         Self::Moving(surface_modes(rigid, &system.along, system))
     }
 
+    /// Whether it moves by itself.
+    fn moves(&self) -> bool {
+        matches!(self, Self::Moving(modes) if !modes.is_empty())
+    }
+
     /// Whether elastic modes move it along itself.
     pub(super) fn vibrates(&self) -> bool {
         matches!(self, Self::Moving(modes) if modes.iter().any(|mode| mode.oscillator.omega > 0.0))
@@ -78,13 +88,14 @@ pub(super) fn surface_modes(
 }
 
 /// Bodies, and what they touch.
-pub(super) struct Rubbing<'a> {
-    pub(super) outer: &'a Outer,
-    pub(super) inner: Option<&'a Inner>,
+#[derive(Debug, Clone)]
+pub(super) struct Rubbing {
+    pub(super) outer: Outer,
+    pub(super) inner: Option<Inner>,
     pub(super) struck: StruckSurface,
     /// Modes that move its surfaces at a right angle to the x direction, which are left out; none of a plate or a wall.
-    pub(super) aside: &'a [SurfaceMode],
-    pub(super) contacts: [Touching<'a>; 2],
+    pub(super) aside: Vec<SurfaceMode>,
+    pub(super) contacts: [Touching; 2],
 }
 
 /// Motion along the surfaces, and the energy that friction took.
@@ -94,6 +105,8 @@ pub(super) struct Rubbed {
     pub(super) dissipated: Option<[f64; 2]>,
     /// See [`Slid::across`], over the speed of the outer body across what it strikes.
     across: f64,
+    /// See [`Settled`](crate::dynamics::integration::Settled); `None` where the models omit it.
+    unsettled: Option<f64>,
     /// See [`Slid::error`].
     error: f64,
     /// Largest speed of the struck surfaces at a right angle to x, where there is friction, over that of the outer body.
@@ -103,10 +116,15 @@ pub(super) struct Rubbed {
 impl Rubbed {
     /// What the user has to know of the motion across the surfaces that friction causes.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let across = (self.across > NOTABLE_ACROSS).then(|| {
+        let across = (self.across > NOTABLE_ACROSS && self.unsettled.is_none()).then(|| {
             format!(
                 "friction bends or turns what is struck, which the models omit: forces and efficiency may be wrong by about {:.1} % (velocity of the contacts across the surfaces over that of the outer body)",
                 100.0 * self.across
+            )
+        });
+        let unsettled = self.unsettled.filter(|error| *error > settled::SETTLED).map(|error| {
+            format!(
+                "friction bends or turns what is struck, and the forces across and along the surfaces have not settled: velocities and force peaks are uncertain by {error:.0e}"
             )
         });
         let error = (self.error > SETTLED).then(|| {
@@ -121,7 +139,7 @@ impl Rubbed {
                 100.0 * self.aside
             )
         });
-        across.into_iter().chain(error).chain(aside).collect()
+        across.into_iter().chain(unsettled).chain(error).chain(aside).collect()
     }
 
     /// Energy that friction dissipates, J; `None` without friction.
@@ -156,13 +174,13 @@ fn frictions(outer: &Outer, inner: Option<&Inner>) -> [f64; 2] {
 
 /// A sentence where friction makes the `contacts` of unlike materials stiffer, for a model that omits that.
 pub(super) fn omitted_stiffening(
-    contacts: [Touching<'_>; 2],
+    contacts: [Touching; 2],
     outer: &Outer,
     inner: Option<&Inner>,
 ) -> Option<String> {
     let growth = contacts.into_iter().zip(frictions(outer, inner)).map(|((law, [tip, face]), friction)| {
-        let smooth = Hertz::new(law.tip_radius, tip, face);
-        smooth.with_friction(tip, face, friction).stiffness / smooth.stiffness - 1.0
+        let smooth = Hertz::new(law.tip_radius, &tip, &face);
+        smooth.with_friction(&tip, &face, friction).stiffness / smooth.stiffness - 1.0
     });
     let most = growth.fold(0.0, f64::max);
     (most > NOTABLE_STIFFENING).then(|| {
@@ -175,9 +193,9 @@ pub(super) fn rubs_along(outer: &Outer, inner: Option<&Inner>) -> bool {
     moves_along(outer, inner) && frictions(outer, inner).iter().any(|friction| *friction > 0.0)
 }
 
-impl Rubbing<'_> {
+impl Rubbing {
     fn frictions(&self) -> [f64; 2] {
-        frictions(self.outer, self.inner)
+        frictions(&self.outer, self.inner.as_ref())
     }
 
     fn has_friction(&self) -> bool {
@@ -185,10 +203,14 @@ impl Rubbing<'_> {
     }
 
     /// `options` that keep the contact forces of `system` as well, where there is friction.
-    pub(super) fn keeping_forces(&self, system: &System, options: Options) -> Options {
-        let rubs = self.has_friction();
-        let sample_interval = rubs.then(|| system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
-        Options { sample_interval, forces_alone: rubs, presses: rubs, ..options }
+    pub(super) fn keeping_forces(&self, system: &System, options: &Options) -> Options {
+        if !self.has_friction() {
+            return *options;
+        }
+        let interval = system.hertz_impact().duration() / SAMPLES_PER_CONTACT;
+        let forces_alone = options.sample_interval.is_none();
+        let sample_interval = options.sample_interval.or(Some(interval));
+        Options { sample_interval, forces_alone, presses: true, ..*options }
     }
 
     /// What they do under the contact forces that `result` has as its history; `None` of a run that was cut.
@@ -199,15 +221,16 @@ impl Rubbing<'_> {
         if result.stop == StopReason::Cut {
             return Ok(None);
         }
-        let outer = turning_body(&self.outer.shape, &self.outer.material, &self.outer.turning);
-        let inner = self.inner.and_then(|inner| turning_body(&inner.shape, &inner.material, &inner.turning));
+        let inner = self.inner.as_ref();
+        let spins = [self.outer.turning.spin, inner.map_or(0.0, |inner| inner.turning.spin)];
         let along = self.outer.speed * self.outer.angle.sin();
-        let spins = [self.outer.turning.spin, self.inner.map_or(0.0, |inner| inner.turning.spin)];
-        let slid = match self.has_friction() {
-            true => Some(self.slide([outer, inner], along, spins, result)?),
-            false => None,
+        let slid = match &result.friction {
+            _ if !self.has_friction() => Slid::default(),
+            Some(friction) => friction.slid.clone(),
+            None => self.slide(result)?,
         };
-        let [at_outer, at_inner] = slid.map_or([0.0; 2], |slid| slid.impulse);
+        let [at_outer, at_inner] = slid.impulse;
+        let [outer, inner] = self.turning_bodies();
         // impulse along x on the inner body's upper side
         let pushed = match self.struck {
             StruckSurface::OtherBody => at_outer,
@@ -218,52 +241,34 @@ impl Rubbing<'_> {
         Ok(Some(Rubbed {
             sideways: Sideways {
                 outer_tangential_velocity_final: along - at_outer * per_mass(outer),
-                inner_tangential_velocity_final: self.inner.map(|_| pushed * per_mass(inner)),
+                inner_tangential_velocity_final: self.inner.as_ref().map(|_| pushed * per_mass(inner)),
                 outer_spin_final: spins[0] + at_outer * per_inertia(outer),
-                inner_spin_final: self.inner.map(|_| spins[1] + pushed * per_inertia(inner)),
+                inner_spin_final: self.inner.as_ref().map(|_| spins[1] + pushed * per_inertia(inner)),
             },
-            dissipated: slid.map(|slid| slid.dissipated),
-            across: slid.map_or(0.0, |slid| slid.across / self.outer.normal_speed()),
-            error: slid.map_or(0.0, |slid| slid.error),
+            dissipated: self.has_friction().then_some(slid.dissipated),
+            across: slid.across / self.outer.normal_speed(),
+            unsettled: result.friction.as_ref().map(|friction| friction.error),
+            error: slid.error,
             aside: self.speed_aside(result)? / self.outer.speed,
         }))
     }
 
-    fn slide(
-        &self,
-        bodies: [Option<TurningBody>; 2],
-        along: f64,
-        spins: [f64; 2],
-        result: &Integration,
-    ) -> Result<Slid> {
-        let (time, presses) = self.presses(result)?;
-        let mobilities = bodies.map(|body| body.map_or(0.0, |body| body.mobility()));
-        let arms = bodies.map(|body| body.map_or(0.0, |body| body.arm));
-        let surfaces = [along - spins[0] * arms[0], spins[1] * arms[1]];
-        let [first, second] = mobilities;
-        let (mobility, velocity, modes) = match &self.struck {
-            StruckSurface::OtherBody => ([first + second, 0.0], [surfaces[0] - surfaces[1], 0.0], &[][..]),
-            StruckSurface::Moving(modes) => (mobilities, surfaces, &modes[..]),
-        };
-        let frictions = self.frictions();
-        let contact = |i: usize| {
-            let (_, materials) = self.contacts[i];
-            let widest = presses[i].iter().map(|press| press.radius).fold(0.0, f64::max);
-            // surfaces that do not move along each other stay so, unless a plate between moves them
-            let moves = velocity[i] != 0.0 || !modes.is_empty();
-            (moves && widest > 0.0).then(|| TangentialContact::new(materials, frictions[i], widest))
-        };
-        let slide = |finer: f64| {
-            Sliding { contacts: [contact(0), contact(1)], mobility, modes, velocity }
-                .slide(time, &presses, finer)
-        };
-        if modes.is_empty() {
-            return Ok(slide(1.0));
+    fn turning_bodies(&self) -> [Option<TurningBody>; 2] {
+        let of_inner = |inner: &Inner| turning_body(&inner.shape, &inner.material, &inner.turning);
+        let Outer { shape, material, turning, .. } = &self.outer;
+        [turning_body(shape, material, turning), self.inner.as_ref().and_then(of_inner)]
+    }
+
+    /// What friction does under the contact forces that `result` has as its history, with an estimate of its error.
+    fn slide(&self, result: &Integration) -> Result<Slid> {
+        if !self.struck.moves() {
+            return self.slide_in_steps(result, 1.0);
         }
+        let mobility = self.mobilities();
         // quick modes are not resolved: whether that matters shows in twice as many steps
-        let mut coarse = slide(0.5);
+        let mut coarse = self.slide_in_steps(result, 0.5)?;
         for finer in FINER {
-            let fine = slide(finer);
+            let fine = self.slide_in_steps(result, finer)?;
             let change =
                 |i: usize| mobility[i] * (fine.impulse[i] - coarse.impulse[i]).abs() / self.outer.speed;
             let error = change(0).max(change(1)) / 3.0;
@@ -275,13 +280,45 @@ impl Rubbing<'_> {
         Ok(coarse)
     }
 
+    /// Relative acceleration of the bodies' surfaces at each contact per force along it, 1/kg.
+    fn mobilities(&self) -> [f64; 2] {
+        let [first, second] = self.turning_bodies().map(|body| body.map_or(0.0, |body| body.mobility()));
+        match self.struck {
+            StruckSurface::OtherBody => [first + second, 0.0],
+            StruckSurface::Moving(_) => [first, second],
+        }
+    }
+
+    /// The same in `finer` times as many steps as seem enough.
+    fn slide_in_steps(&self, result: &Integration, finer: f64) -> Result<Slid> {
+        let (time, presses) = self.presses(result)?;
+        let arms = self.turning_bodies().map(|body| body.map_or(0.0, |body| body.arm));
+        let along = self.outer.speed * self.outer.angle.sin();
+        let spins = [self.outer.turning.spin, self.inner.as_ref().map_or(0.0, |inner| inner.turning.spin)];
+        let surfaces = [along - spins[0] * arms[0], spins[1] * arms[1]];
+        let (velocity, modes) = match &self.struck {
+            StruckSurface::OtherBody => ([surfaces[0] - surfaces[1], 0.0], &[][..]),
+            StruckSurface::Moving(modes) => (surfaces, &modes[..]),
+        };
+        let frictions = self.frictions();
+        let contact = |i: usize| {
+            let (_, [tip, face]) = &self.contacts[i];
+            let widest = presses[i].iter().map(|press| press.radius).fold(0.0, f64::max);
+            // surfaces that do not move along each other stay so, unless a plate between moves them
+            let moves = velocity[i] != 0.0 || !modes.is_empty();
+            (moves && widest > 0.0).then(|| TangentialContact::new([tip, face], frictions[i], widest))
+        };
+        let contacts = [contact(0), contact(1)];
+        Ok(Sliding { contacts, mobility: self.mobilities(), modes, velocity }.slide(time, &presses, finer))
+    }
+
     /// Largest speed in m/s at which what is struck moves its rubbing surfaces at a right angle to x.
     fn speed_aside(&self, result: &Integration) -> Result<f64> {
         if self.aside.is_empty() || !self.has_friction() {
             return Ok(0.0);
         }
         let (time, presses) = self.presses(result)?;
-        let mut surfaces = MovingSurfaces::new(self.aside);
+        let mut surfaces = MovingSurfaces::new(&self.aside);
         let mut most = 0.0_f64;
         for k in 1..time.len() {
             let [from, to] = [k - 1, k].map(|k| [presses[0][k].force, presses[1][k].force]);
@@ -296,7 +333,7 @@ impl Rubbing<'_> {
     }
 
     /// Times in s, and how both contacts are pressed then.
-    fn presses<'b>(&self, result: &'b Integration) -> Result<(&'b [f64], Cow<'b, [Vec<Press>; 2]>)> {
+    fn presses<'b>(&self, result: &'b Integration) -> Result<PressHistory<'b>> {
         let history = result.history.as_ref();
         let history = history.ok_or_else(|| Error::Internal("the forces were not kept".into()))?;
         let forces = ["outer_force", "inner_force"].map(|name| history.curve(name));

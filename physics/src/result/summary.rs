@@ -44,7 +44,7 @@ pub struct StackSummary {
     pub share: Option<f64>,
 }
 
-/// How bodies move along the plate and turn after an impact beside the centre or at an angle.
+/// How bodies move along the plate and turn after an off-centre impact or at an angle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sideways {
     /// Velocity of the outer body along x in m/s.

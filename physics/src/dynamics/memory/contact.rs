@@ -8,7 +8,7 @@ pub(super) enum Contact {
     /// Remembers nothing.
     Elastic(Hertz),
     Dented(Box<DentedContact>),
-    Viscoelastic(ViscoelasticContact),
+    Viscoelastic(Box<ViscoelasticContact>),
 }
 
 impl Contact {

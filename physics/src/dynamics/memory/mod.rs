@@ -178,7 +178,7 @@ impl Memory {
         for contact in &mut self.bodies.contacts {
             match contact {
                 Contact::Dented(contact) if spot == Spot::Fresh => **contact = contact.on_a_fresh_spot(),
-                Contact::Viscoelastic(contact) => *contact = contact.virgin(),
+                Contact::Viscoelastic(contact) => **contact = contact.virgin(),
                 _ => {}
             }
         }
@@ -266,7 +266,7 @@ fn contact(pair: [&Material; 2], hertz: Hertz, hit: &HertzImpact) -> Result<Cont
         (false, Some(contact)) => Ok(Contact::Dented(Box::new(contact))),
         (true, None) => {
             let springs = ViscoelasticContact::new(hertz.tip_radius, pair, radius / SPRINGS);
-            Ok(Contact::Viscoelastic(springs))
+            Ok(Contact::Viscoelastic(Box::new(springs)))
         }
         (true, Some(_)) => Err(Error::Internal("a contact that yields and relaxes".into())),
     }
@@ -319,7 +319,7 @@ pub fn integrate(system: &System, memory: &Memory, options: &Options) -> Result<
             let radius = peaks.map(|peaks| system.laws[i].contact_radius(peaks[i])).filter(|r| *r > 0.0);
             // as many springs as the peak of the run before asks for, and more with every halving
             if let (Contact::Viscoelastic(contact), Some(radius)) = (contact, radius) {
-                *contact = contact.with_springs_every(radius / SPRINGS * FINER.powi(halvings as i32));
+                **contact = contact.with_springs_every(radius / SPRINGS * FINER.powi(halvings as i32));
             }
         }
         let mut stepper = MemoryStepper::new(system, bodies, &memory.plate, h, options);

@@ -404,6 +404,7 @@ impl<'a> MemoryStepper<'a> {
             stop: StopReason::of(self.contacts.iter().any(|contact| contact.closed)),
             history: self.history,
             presses: self.presses,
+            friction: None,
         };
         Ran { integration, contacts: self.bodies.contacts, loads: self.loads }
     }

@@ -83,6 +83,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         contacts: stepper.contacts,
         fluid: stepper.booked,
         steps: stepper.steps,
+        surface_work: 0.0,
     };
     Ok(closing.integration(stepper.recorder.map(Recorder::finish)))
 }

@@ -16,7 +16,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, integrate};
 use crate::error::{Error, Result};
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
-use crate::kinds::rubbing::{Rubbed, omitted_stiffening};
+use crate::kinds::rubbing::{Rubbed, Rubbing, omitted_stiffening};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::Material;
 use crate::numerics::stopwatch::Stopwatch;
@@ -46,6 +46,8 @@ pub(super) struct ContactModel {
     between: Option<Between>,
     /// Materials of what the outer and the inner body touch.
     faces: [Material; 2],
+    /// See [`Self::rubbing`].
+    rubbing: Option<Rubbing>,
 }
 
 impl ContactModel {
@@ -86,7 +88,8 @@ impl ContactModel {
             Memory::new([&setup.outer.material, &face, inner], setup.plate().map(Bending::new), &system)?;
         let normal_share = given.outer.angle.cos().powi(2);
         let (scene, setup) = (scene.clone(), setup.clone());
-        Ok(Self { scene, normal_share, system, frame, memory, between, faces, setup })
+        let model = Self { scene, normal_share, system, frame, memory, between, faces, setup, rubbing: None };
+        Ok(Self { rubbing: model.rubbing()?, ..model })
     }
 
     /// The results of an integration; those that a scene does not have are not determined.
@@ -141,6 +144,7 @@ impl ContactModel {
             system: &self.system,
             fluid: None,
             memory: self.memory.as_ref(),
+            rubbing: self.rubbing.as_ref(),
             series: self.setup.series,
             values: &values,
         })
@@ -153,7 +157,7 @@ impl ContactModel {
     /// The summary, what the materials remembered when the last impact began, and with which steps it converged.
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>, Option<Converged>)> {
         let start = Stopwatch::start();
-        let options = self.keeping_forces(Options { heat: true, ..self.options(tolerance) })?;
+        let options = Options { heat: true, ..self.options(tolerance) };
         let Done { last, impacts, memory, warnings } = self.with_impacts(|all| all.all(&options))?;
         let seconds = start.seconds();
         let mut summary = self.summary(&last, tolerance)?;
@@ -268,7 +272,7 @@ impl ContactModel {
         let rubbed = self.rubbed(result)?;
         warnings.extend(rubbed.iter().flat_map(Rubbed::warnings));
         let table = self.of_all_motion(self.table(result), rubbed.as_ref());
-        let is_omitted = self.rubbing()?.is_none();
+        let is_omitted = self.rubbing.is_none();
         if is_omitted && self.scene.general_impact()?.moves_along() {
             warnings.push("motion along the surfaces is omitted by the reduced model".into());
         }
@@ -407,7 +411,6 @@ impl SeriesModel for ContactModel {
     /// `tolerance` bounds the error of the time integration in all results.
     fn point(&self, tolerance: f64) -> Result<Point<Table>> {
         let options = error_control::all_within(tolerance, self.options(tolerance));
-        let options = self.keeping_forces(options)?;
         let result = self.with_impacts(|all| all.all(&options))?.last;
         let least = result.least_tolerance;
         balance_check(result.energy_residual, result.momentum_residual, tolerance.max(least))?;

@@ -78,7 +78,7 @@ pub(super) fn kirchhoff_system(setup: &PlateImpact, modes: usize, plates: &UnitP
     join(setup, plates.modes(&setup.plate, modes)?, [0.0; 2])
 }
 
-/// Models A and B with `modes` modes of a plate that is struck beside its centre.
+/// Models A and B with `modes` modes of a plate that is struck off its centre.
 pub(super) fn off_centre_system(setup: &PlateImpact, modes: usize, plates: &UnitPlates) -> Result<System> {
     let OffCentreModes { body, along } = off_centre::modes(&setup.plate, setup.outer.offset, modes, plates)?;
     let centre: Vec<f64> = body.participation.iter().map(|phi| phi[1]).collect();

@@ -33,7 +33,7 @@ pub(super) fn judge(setup: &PlateImpact, summary: &mut Summary, history: Option<
     let curves = history.and_then(PlateCurves::of);
     let deflection = curves.and_then(|curves| deflection(setup, &curves));
     limits.extend(deflection.map(|w| SMALL_DEFLECTION.at("plate", w / setup.plate.thickness)));
-    // forces beside the centre bend the plate in two places, a film in none
+    // off-centre forces bend the plate in two places, a film in none
     let is_struck_alone = setup.outer.is_centred() && setup.fluid.as_ref().is_none_or(|f| !f.squeeze_film);
     let loads =
         history.and_then(ForceHistory::of).filter(|_| is_struck_alone && peaks.iter().all(Option::is_some));

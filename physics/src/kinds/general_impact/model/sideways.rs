@@ -1,7 +1,7 @@
 //! What the bodies do along their surfaces, from the contact forces of the model.
 
 use super::ContactModel;
-use crate::dynamics::integration::{Integration, Options};
+use crate::dynamics::integration::Integration;
 use crate::error::Result;
 use crate::kinds::general_impact::{GeneralImpact, Struck};
 use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, Touching};
@@ -21,13 +21,8 @@ impl ContactModel {
         table
     }
 
-    /// `options` that keep the contact forces as well, where friction moves bodies along the surfaces.
-    pub(super) fn keeping_forces(&self, options: Options) -> Result<Options> {
-        Ok(self.rubbing()?.map_or(options, |rubbing| rubbing.keeping_forces(&self.system, options)))
-    }
-
     /// The bodies, if they move along the surfaces as the model has it: not where a body that relaxes turns.
-    pub(super) fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
+    pub(super) fn rubbing(&self) -> Result<Option<Rubbing>> {
         let scene = self.scene.general_impact()?;
         let GeneralImpact { outer, inner, struck, .. } = scene;
         let surface = match struck {
@@ -43,21 +38,22 @@ impl ContactModel {
         if !scene.moves_along() || surface.vibrates() && relaxes {
             return Ok(None);
         }
-        let aside = self.between.as_ref().map_or(&[][..], |between| &between.aside);
-        let contacts = self.touching(scene);
-        Ok(Some(Rubbing { outer, inner: inner.as_ref(), struck: surface, aside, contacts }))
+        let aside = self.between.as_ref().map_or_else(Vec::new, |between| between.aside.clone());
+        let (outer, inner, contacts) = (outer.clone(), inner.clone(), self.touching(scene));
+        Ok(Some(Rubbing { outer, inner, struck: surface, aside, contacts }))
     }
 
     /// Both contacts of `scene`.
-    pub(super) fn touching<'a>(&'a self, scene: &'a GeneralImpact) -> [Touching<'a>; 2] {
+    pub(super) fn touching(&self, scene: &GeneralImpact) -> [Touching; 2] {
         let GeneralImpact { outer, inner, .. } = scene;
         let laws = self.system.laws;
         let behind = inner.as_ref().map_or(&outer.material, |inner| &inner.material);
-        [(laws[0], [&outer.material, &self.faces[0]]), (laws[1], [behind, &self.faces[1]])]
+        let [struck, pushed] = self.faces.clone();
+        [(laws[0], [outer.material.clone(), struck]), (laws[1], [behind.clone(), pushed])]
     }
 
     /// What the bodies do along the surfaces; `None` where they do not move so, or the run was cut.
     pub(super) fn rubbed(&self, result: &Integration) -> Result<Option<Rubbed>> {
-        self.rubbing()?.map_or(Ok(None), |rubbing| rubbing.solve(result))
+        self.rubbing.as_ref().map_or(Ok(None), |rubbing| rubbing.solve(result))
     }
 }

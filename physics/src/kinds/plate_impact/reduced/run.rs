@@ -1,6 +1,6 @@
 //! Runs of a reduced model, and what they come to.
 
-use super::{Point, Reduced};
+use super::{Point, Reduced, touching};
 use crate::dynamics::StopReason;
 use crate::dynamics::balance_check;
 use crate::dynamics::error_control;
@@ -15,7 +15,7 @@ use crate::kinds::plate_impact::trials::TruncationError;
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
 use crate::kinds::plate_impact::{Kind, PlateImpact};
-use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, Touching, moves_along, omitted_stiffening};
+use crate::kinds::rubbing::{Rubbed, omitted_stiffening};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::numerics::stopwatch::Stopwatch;
 use crate::result::{
@@ -51,6 +51,7 @@ impl Reduced {
             system: &self.system,
             fluid: self.fluid.as_ref(),
             memory: self.memory.as_ref(),
+            rubbing: self.rubbing.as_ref(),
             series,
             values: &|system, result| values(system, result).table(),
         }
@@ -77,7 +78,7 @@ impl Reduced {
     /// The summary, what the materials remembered when the last impact began, and with which steps it converged.
     fn unjudged(&self, tolerance: f64) -> Result<(Summary, Option<Memory>, Option<Converged>)> {
         let start = Stopwatch::start();
-        let options = self.keeping_forces(Options { heat: true, ..self.options(tolerance) })?;
+        let options = Options { heat: true, ..self.options(tolerance) };
         let Done { last, impacts, memory, warnings } = self.impacts().all(&options)?;
         let mut summary = self.summary(&last, tolerance, start.seconds())?;
         summary.warnings.extend(warnings);
@@ -87,32 +88,9 @@ impl Reduced {
         Ok((Summary { impacts, elastic_efficiency, elastic_limit, ..summary }, memory, last.converged))
     }
 
-    /// `options` that keep the contact forces as well, where friction moves bodies along the plate.
-    fn keeping_forces(&self, options: Options) -> Result<Options> {
-        Ok(self.rubbing()?.map_or(options, |rubbing| rubbing.keeping_forces(&self.system, options)))
-    }
-
-    /// The bodies, if they move along the plate.
-    fn rubbing(&self) -> Result<Option<Rubbing<'_>>> {
-        let setup = self.scene.plate_impact()?;
-        let PlateImpact { outer, inner, plate, .. } = setup;
-        if !moves_along(outer, Some(inner)) {
-            return Ok(None);
-        }
-        let struck = StruckSurface::plate(plate, outer.offset, &self.system);
-        Ok(Some(Rubbing { outer, inner: Some(inner), struck, aside: &[], contacts: self.touching(setup) }))
-    }
-
-    /// Both contacts of `setup`.
-    fn touching<'a>(&self, setup: &'a PlateImpact) -> [Touching<'a>; 2] {
-        let PlateImpact { outer, inner, plate, .. } = setup;
-        let laws = self.system.laws;
-        [(laws[0], [&outer.material, &plate.material]), (laws[1], [&inner.material, &plate.material])]
-    }
-
     /// What the bodies do along the plate, of a `result` with forces; `None` where they do not move so, or the run was cut.
     fn rubbed(&self, result: &Integration) -> Result<Option<Rubbed>> {
-        self.rubbing()?.map_or(Ok(None), |rubbing| rubbing.solve(result))
+        self.rubbing.as_ref().map_or(Ok(None), |rubbing| rubbing.solve(result))
     }
 
     /// `None` without yield strengths, and where bodies relax or bend before they strike.
@@ -177,7 +155,6 @@ impl Reduced {
     /// The results with `options`, whose ledger balances to `tolerance`.
     fn solved(&self, tolerance: f64, options: Options) -> Result<Point> {
         let options = Options { peak_error: PEAK_ERROR * options.tolerance, ..options };
-        let options = self.keeping_forces(options)?;
         let result = self.impacts().all(&options)?.last;
         balance_check(
             result.energy_residual,
@@ -227,8 +204,7 @@ impl Reduced {
     /// Results and history of a single impact, from one integration.
     fn unjudged_course(&self, tolerance: f64) -> Result<(Table, History)> {
         let sample_interval = Some(self.system.hertz_impact().duration() / SAMPLES_PER_CONTACT);
-        let options = self.keeping_forces(self.options(tolerance))?;
-        let options = Options { sample_interval, forces_alone: false, ..options };
+        let options = Options { sample_interval, ..self.options(tolerance) };
         let (result, _) = self.impacts().one(&options, self.memory.as_ref())?;
         let table = self.table(&result, self.rubbed(&result)?.as_ref());
         Ok((table, result.history.ok_or_else(|| Error::Internal("a history was requested".into()))?))
@@ -316,7 +292,8 @@ impl Reduced {
         let rubbed = self.rubbed(result)?;
         warnings.extend(rubbed.iter().flat_map(Rubbed::warnings));
         if self.memory.is_some() {
-            warnings.extend(omitted_stiffening(self.touching(setup), &setup.outer, Some(&setup.inner)));
+            let contacts = touching(setup, system);
+            warnings.extend(omitted_stiffening(contacts, &setup.outer, Some(&setup.inner)));
         }
         warnings.extend(film_warning(result.losses.squeeze_film, system));
         warnings.extend(uncertain(result, tolerance));

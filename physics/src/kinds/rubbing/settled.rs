@@ -1,0 +1,196 @@
+//! Friction that bends or turns what is struck: the motion across the surfaces and that along them, in turn until both settle.
+
+use super::{Rubbing, StruckSurface};
+use crate::dynamics::StopReason;
+use crate::dynamics::error_control::differences;
+use crate::dynamics::integration::{Integration, Options, Settled};
+use crate::dynamics::sliding::Slid;
+use crate::dynamics::surface_load::SurfaceLoad;
+use crate::dynamics::surface_modes::SurfaceMode;
+use crate::dynamics::system::System;
+use crate::error::Result;
+
+/// Velocity across the surfaces by friction, over the speed, up to which its effect is negligible.
+const NEGLIGIBLE_ACROSS: f64 = 1e-4;
+/// Error of velocities, over the speed, and force peaks, relative, by ending the rounds, that is in order, and rounds at most.
+pub(super) const SETTLED: f64 = 1e-4;
+const MOST_ROUNDS: usize = 12;
+
+impl Rubbing {
+    /// The impact of `system` that `run` finds, with friction's effect on the motion across the surfaces if there is one, and the contact
+    /// forces as its history, or the one that the `options` request.
+    ///
+    /// # Errors
+    /// As `run` and [`Rubbing::solve`].
+    pub(in crate::kinds) fn settled(
+        &self,
+        system: &System,
+        options: &Options,
+        run: impl Fn(&System, &Options) -> Result<Integration>,
+    ) -> Result<Integration> {
+        let modes = match &self.struck {
+            StruckSurface::Moving(modes) if self.has_friction() && modes.iter().any(couples) => modes,
+            _ => return run(system, options),
+        };
+        let along = participations(system, modes);
+        let rough = self.keeping_forces(system, &Options { sample_interval: None, ..*options });
+        let smooth = run(system, &rough)?;
+        // friction changes little: steps that are right without it are right with it
+        let converged = smooth.converged.or(options.converged);
+        let (error_estimate, mut found, mut loaded) = (smooth.error_estimate, smooth, None);
+        let (mut error, mut change_before) = (0.0_f64, f64::INFINITY);
+        for _ in 0..MOST_ROUNDS {
+            if found.stop == StopReason::Cut {
+                break;
+            }
+            let Slid { course, across, .. } = self.slide_in_steps(&found, 1.0)?;
+            if across <= NEGLIGIBLE_ACROSS * system.speed {
+                break;
+            }
+            let load = SurfaceLoad { course, along: along.clone() };
+            let pushed = System { surface_load: Some(load), ..system.clone() };
+            let next = run(&pushed, &Options { converged, ..rough })?;
+            let peaks = [&found, &next].map(|result| result.contacts.map(|contact| contact.force_peak));
+            let [velocity, force] = differences(system, [found.velocity, next.velocity], peaks);
+            let change = velocity.max(force);
+            // each round leaves the same share of the change before
+            let share = (change / change_before).clamp(change, 1.0);
+            error = change * share / (1.0 - share).max(share);
+            (found, loaded, change_before) = (next, Some(pushed), change);
+            if error <= SETTLED {
+                break;
+            }
+        }
+        if found.stop == StopReason::Cut {
+            return run(system, options);
+        }
+        let slid = self.slide(&found)?;
+        if *options != rough {
+            found = run(loaded.as_ref().unwrap_or(system), &Options { converged, ..*options })?;
+        }
+        Ok(Integration { friction: Some(Settled { error, slid }), converged, error_estimate, ..found })
+    }
+}
+
+/// Whether `mode` moves the surfaces along themselves and across.
+fn couples(mode: &SurfaceMode) -> bool {
+    [mode.along, mode.approach].iter().all(|moved| *moved != [0.0; 2])
+}
+
+/// Displacement along x of the surfaces at both contacts per unit of each coordinate of `system`, of which the struck body moves in `modes`.
+fn participations(system: &System, modes: &[SurfaceMode]) -> Vec<[f64; 2]> {
+    let mut along = vec![[0.0; 2]; system.oscillators.len()];
+    system.elastic().zip(&system.along).for_each(|(k, of_mode)| along[k] = *of_mode);
+    // the contacts see as few rigid motions as there are across the surfaces: combinations of all
+    let rigid = || modes.iter().filter(|mode| mode.oscillator.omega == 0.0);
+    let seen: Vec<usize> = system.rigid().collect();
+    let approach = |k: usize, i: usize| system.approach[i][k];
+    for i in 0..2 {
+        // motion across the surface at both contacts by a force along it at contact i
+        let moved = [0, 1].map(|j| rigid().map(|mode| mode.approach[j] * mode.along[i]).sum::<f64>());
+        match seen[..] {
+            [k] => along[k][i] = moved[0] / approach(k, 0),
+            [k, l] => {
+                let [[a, b], [c, d]] = [0, 1].map(|j| [approach(k, j), approach(l, j)]);
+                let determinant = a * d - b * c;
+                along[k][i] = (moved[0] * d - b * moved[1]) / determinant;
+                along[l][i] = (a * moved[1] - moved[0] * c) / determinant;
+            }
+            _ => {}
+        }
+    }
+    along
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::ModalBody;
+    use crate::dynamics::error_control::controlled;
+    use crate::dynamics::{MovingBody, integrate};
+    use crate::material::Material;
+    use crate::scene::{Outer, Shape, Turning};
+    use approx::assert_relative_eq;
+
+    /// A ball slides over the face of a free rigid body, on the whole way, away from the centre: the friction turns the body towards the ball
+    /// or away from it. Along the normal that is an elastic impact of another mobility, A - mu C (Stronge, Impact Mechanics, 2000, 3.3).
+    #[test]
+    fn a_sliding_ball_turns_a_rigid_body() {
+        let steel = Material::elastic("steel", 210e9, 0.3, 7780.0);
+        let (mass, inertia, height) = (20e-3_f64, 4e-7_f64, 8e-3);
+        for (arm, friction) in [(5e-3, 0.3), (-5e-3, 0.3), (3e-3, 0.25), (-3e-3, 0.25)] {
+            // along z, along x, about y
+            let motion = |approach: f64, along: f64| SurfaceMode::rigid([approach, 0.0], [along, 0.0]);
+            let (push, turn) = (mass.sqrt().recip(), inertia.sqrt().recip());
+            let modes = vec![motion(push, 0.0), motion(0.0, push), motion(arm * turn, height * turn)];
+            let product = |of: fn(&SurfaceMode) -> f64, by: fn(&SurfaceMode) -> f64| -> f64 {
+                modes.iter().map(|mode| of(mode) * by(mode)).sum()
+            };
+            let of_body = product(|mode| mode.approach[0], |mode| mode.approach[0]);
+            let coupling = product(|mode| mode.approach[0], |mode| mode.along[0]);
+            let body = ModalBody {
+                omega: vec![0.0],
+                damping_ratio: vec![0.0],
+                participation: vec![[of_body.sqrt(), 0.0]],
+                residual: None,
+            };
+            let turning = Turning { friction, ..Turning::default() };
+            let angle = 80_f64.to_radians();
+            let ball = Outer::centred(Shape::Sphere { radius: 3e-3 }, steel.clone(), 0.2);
+            let normal = MovingBody::outer(&ball).unwrap();
+            let system = System::on_body(normal, &body, &steel, 0.0);
+            let outer = Outer { angle, speed: ball.speed / angle.cos(), turning, ..ball };
+            let contact = (system.laws[0], [steel.clone(), steel.clone()]);
+            let rubbing = Rubbing {
+                outer,
+                inner: None,
+                struck: StruckSurface::Moving(modes),
+                aside: Vec::new(),
+                contacts: [contact.clone(), contact],
+            };
+            let run = |system: &System, options: &Options| {
+                controlled(options, system, |options| integrate(system, None, options))
+            };
+            let found = rubbing.settled(&system, &Options::default(), run).unwrap();
+            let mobility = system.masses[0].recip() + of_body;
+            let impulse = 2.0 * system.speed / (mobility - friction * coupling);
+            assert_relative_eq!(found.contacts[0].impulse, impulse, max_relative = 2e-3);
+            // the coupling is no detail
+            let smooth = 2.0 * system.speed / mobility;
+            assert!((impulse / smooth - 1.0).abs() > 0.01, "{impulse} {smooth}");
+            let residuals = [found.momentum_residual, found.energy_residual];
+            assert!(residuals[0] < 1e-12 && residuals[1] < 1e-7, "{residuals:?}");
+            assert!(found.friction.is_some_and(|friction| friction.error < SETTLED));
+        }
+    }
+
+    /// What a force along the surface does across it at both contacts, by the rigid motions that the contacts see and by all of them.
+    #[test]
+    fn rigid_motions_that_the_contacts_see_are_pushed_as_all_are() {
+        let motion = |approach: [f64; 2], along: [f64; 2]| SurfaceMode::rigid(approach, along);
+        let modes = [
+            motion([2.0, -1.0], [0.3, 0.1]),
+            motion([0.5, 1.5], [-0.7, 0.2]),
+            motion([1.0, 0.4], [0.6, 0.9]),
+        ];
+        let product = |i: usize, j: usize| modes.iter().map(|m| m.approach[i] * m.approach[j]).sum::<f64>();
+        let first = product(0, 0).sqrt();
+        let shared = product(0, 1) / first;
+        let body = ModalBody {
+            omega: vec![0.0; 2],
+            damping_ratio: vec![0.0; 2],
+            participation: vec![[first, -shared], [0.0, -(product(1, 1) - shared * shared).sqrt()]],
+            residual: None,
+        };
+        let steel = Material::elastic("steel", 210e9, 0.3, 7780.0);
+        let ball = Outer::centred(Shape::Sphere { radius: 3e-3 }, steel.clone(), 0.2);
+        let bodies = [(); 2].map(|()| MovingBody::outer(&ball).unwrap());
+        let system = System::of(&bodies, &body, &steel, [0.0; 2]);
+        let along = participations(&system, &modes);
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let seen: f64 = system.rigid().map(|k| system.approach[i][k] * along[k][j]).sum();
+            let all: f64 = modes.iter().map(|mode| mode.approach[i] * mode.along[j]).sum();
+            assert_relative_eq!(seen, all, max_relative = 1e-12);
+        }
+    }
+}
