@@ -218,10 +218,10 @@ def off_centre(point: Point) -> Table:
 
 def oblique(point: Point) -> Table:
     """The outer body strikes at an angle, with friction; a third of them away from the centre."""
-    # small contacts take hours
-    scene = _of_solids(dry(point, (0.1, 0.6), (0.03, 0.5), keeps_patch=True))
+    # small contacts on thin plates take hours
+    scene = _of_solids(dry(point, (0.1, 0.6), (0.03, 0.3), keeps_patch=True))
     plate, outer = scene["plate"], scene["outer"]
-    plate["radius"] = min(plate["radius"], 12.0 * plate["thickness"])
+    plate["radius"] = min(plate["radius"], 8.0 * plate["thickness"])
     scene["friction"] = point.log(0.03, 0.6)
     outer["angle"] = math.radians(point.uniform(5.0, 75.0))
     # the velocity across the plate is the one drawn

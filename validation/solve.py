@@ -66,6 +66,18 @@ def of_reference(document: Row) -> Row:
     }
 
 
+def _run(command: Sequence[str | Path], longest: float | None) -> subprocess.CompletedProcess[str]:
+    """Run the program; after ``longest`` seconds it ends what it has started, and itself."""
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True) as started:
+        try:
+            output, errors = started.communicate(timeout=longest)
+        except subprocess.TimeoutExpired:
+            started.terminate()
+            raise
+    return subprocess.CompletedProcess(command, started.returncode, output, errors)
+
+
 def solve(
     path: Path, program: Path, longest: float | None = None, resolution: str = "coarse"
 ) -> Row:
@@ -80,7 +92,7 @@ def solve(
         options = ("--compute", "--json", "--resolution", resolution)
         command: list[str | Path] = [program, "--store", f"{folder}/store", "compare", path]
         command += [*options, "--out", f"{folder}/page"]
-        ran = subprocess.run(command, capture_output=True, text=True, check=False, timeout=longest)
+        ran = _run(command, longest)
     if ran.returncode < 0:
         raise InterruptedError(f"ended by signal {-ran.returncode}")
     found: Row = {

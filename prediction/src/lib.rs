@@ -17,7 +17,7 @@ pub use conformal::{ErrorScale, Place, SeenError};
 pub use kinds::stokes_number;
 pub use similarity::{MEASURES, Similarity};
 
-use impactcheck_physics::result::{Quantity, Summary};
+use impactcheck_physics::result::Summary;
 use impactcheck_physics::scene::{Model, Scene};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -33,6 +33,8 @@ const VELOCITY: &str = "_velocity_final";
 /// Begin of the names of a sphere's velocities, and end of those of directions.
 const COMPONENT: &str = "sphere_velocity";
 const ANGLE: &str = "_angle";
+/// End of the names of what is not predicted: spins follow from the velocities along the surface.
+const SPIN: &str = "_spin_final";
 /// End of the names of restitutions.
 const RESTITUTION: &str = "_restitution";
 /// Widest band over the scale with which a reference determines a quantity.
@@ -70,16 +72,27 @@ pub fn predict(scene: &Scene, continuum: &Summary) -> Prediction {
     let similar = Similar::of(scene)?;
     let (stratum, speed) = (similar.stratum, impact_speed(scene));
     let errors = similar.half_widths(scene, continuum)?;
-    let interval = |quantity: &Quantity| {
-        let &(error, scenes) = errors.get(quantity.name)?;
-        let half = error * scale(quantity.name, |name| continuum.value(name), speed)?;
+    let interval = |(name, value): (&'static str, f64)| {
+        let &(error, scenes) = errors.get(name)?;
+        let half = error * scale(name, |name| value_of(continuum, name), speed)?;
         // velocities and directions have a sign
-        let is_signed = quantity.name.contains("_velocity_") || quantity.name.ends_with(ANGLE);
+        let is_signed = name.contains("_velocity_") || name.ends_with(ANGLE);
         let least = if is_signed { f64::NEG_INFINITY } else { 0.0 };
-        let (low, high) = ((quantity.value? - half).max(least), quantity.value? + half);
-        Some((quantity.name, Interval { low, high, level: LEVEL, scenes, stratum }))
+        let (low, high) = ((value - half).max(least), value + half);
+        Some((name, Interval { low, high, level: LEVEL, scenes, stratum }))
     };
-    Ok(continuum.quantities.iter().filter_map(interval).collect())
+    Ok(values(continuum).filter_map(interval).collect())
+}
+
+/// What is known of a result: its quantities, velocities along the surfaces, spins.
+fn values(summary: &Summary) -> impl Iterator<Item = (&'static str, f64)> + use<'_> {
+    let quantities = summary.quantities.iter().filter_map(|quantity| Some((quantity.name, quantity.value?)));
+    quantities.chain(summary.motion().map(|(name, value, _)| (name, value)))
+}
+
+/// The value of that name.
+fn value_of(summary: &Summary, name: &str) -> Option<f64> {
+    values(summary).find(|(known, _)| *known == name).map(|(_, value)| value)
 }
 
 /// What a reference of `scene` would find, of which a model has the `summary`. Model C runs by `run` for it as it is by default, unless the
@@ -159,13 +172,13 @@ impl Similar {
         }
         let stated =
             continuum.truncation_error.ok_or("the result does not state the error of the omitted modes")?;
-        let half_width = |quantity: &Quantity| {
-            let place = place(&own.results, &own.numbers, quantity.name, stated);
-            let errors = errors(&self.scenes, quantity.name);
+        let half_width = |(name, _): (&'static str, f64)| {
+            let place = place(&own.results, &own.numbers, name, stated);
+            let errors = errors(&self.scenes, name);
             let error = ErrorScale::new(&errors).filter(|_| errors.len() >= FEWEST)?;
-            Some((quantity.name, (error.half_width(&place), errors.len())))
+            Some((name, (error.half_width(&place), errors.len())))
         };
-        let found: BTreeMap<_, _> = continuum.quantities.iter().filter_map(half_width).collect();
+        let found: BTreeMap<_, _> = values(continuum).filter_map(half_width).collect();
         match found.is_empty() {
             true => Err(format!("too few references of the group `{}` determine their values", self.stratum)),
             false => Ok(found),
@@ -224,7 +237,7 @@ fn place<Name>(
 
 /// What the error of a quantity is relative to, by the values of a result and the `speed` of its impact in m/s: the quantity itself;
 /// of a velocity the speed, of a direction 1 rad, of a restitution 1; of a negligible efficiency what is not negligible. `None` of a
-/// negligible inner force: nothing is predicted of it.
+/// negligible inner force and of spins: nothing is predicted of them.
 pub fn scale(quantity: &str, value: impl Fn(&str) -> Option<f64>, speed: f64) -> Option<f64> {
     let own = value(quantity)?.abs();
     Some(match quantity {
@@ -232,6 +245,7 @@ pub fn scale(quantity: &str, value: impl Fn(&str) -> Option<f64>, speed: f64) ->
         "inner_force_peak" => {
             Some(own).filter(|own| *own >= MINOR * value("outer_force_peak").unwrap_or(0.0))?
         }
+        _ if quantity.ends_with(SPIN) => None?,
         _ if quantity.ends_with(VELOCITY) => Some(speed).filter(|speed| speed.is_finite())?,
         _ if quantity.ends_with(RESTITUTION) => 1.0,
         _ if quantity.starts_with(COMPONENT) => value("sphere_speed")?,

@@ -20,11 +20,12 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
         return Err("the validation base has no repeated impacts".into());
     }
     if !setup.outer.is_centred() && setup.plate.edge != Edge::Clamped {
-        return Err("the validation base has off-centre impacts on clamped plates only".into());
+        return Err("the validation base has off-centre and oblique impacts on clamped plates only".into());
     }
-    if setup.outer.angle != 0.0 || setup.spins() {
-        return Err("the validation base has no oblique impacts and no spin".into());
+    if setup.spins() {
+        return Err("the validation base has no spin".into());
     }
+    let oblique = setup.outer.angle != 0.0;
     let is_drawn =
         |fluid: &Fluid| fluid.squeeze_film && fluid.drag_coefficient == 0.0 && fluid.shear_thinning.is_none();
     if setup.fluid.as_ref().is_some_and(|fluid| !is_drawn(fluid)) {
@@ -37,10 +38,11 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
     }
     let features = [
         (setup.fluid.is_some(), "film"),
-        (setup.rubs(), "friction"),
+        (oblique, "oblique"),
+        (setup.rubs() && !oblique, "friction"),
         (setup.relaxes(), "relaxing"),
         (setup.yields(), "yielding"),
-        (!setup.outer.is_centred(), "off-centre"),
+        (!setup.outer.is_centred() && !oblique, "off-centre"),
     ];
     let mut has = features.into_iter().filter(|(has, _)| *has).map(|(_, name)| name);
     match (has.next(), has.next()) {
@@ -56,7 +58,8 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
 pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
     let (plate, outer, inner) = (&setup.plate, &setup.outer, &setup.inner);
     let fluid = setup.fluid.as_ref();
-    vec![
+    let angle = Some(("angle of the velocity in rad", outer.angle)).filter(|(_, angle)| *angle != 0.0);
+    let numbers = [
         ("thickness over radius of the plate", plate.thickness / plate.radius),
         ("Poisson's ratio of the plate", plate.material.poisson_ratio),
         ("damping ratio of the plate", fluid.map_or(plate.damping_ratio, |fluid| fluid.plate_damping_ratio)),
@@ -80,7 +83,8 @@ pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
             "first frequency of the wet plate over the dry one's",
             fluid.map_or(1.0, |fluid| fluid.added_mass_frequency_ratio),
         ),
-    ]
+    ];
+    numbers.into_iter().chain(angle).collect()
 }
 
 /// Numbers of its result `summary`, wherever the plate is struck and whatever its materials do: patch and pressure are those of Hertz at
