@@ -86,7 +86,8 @@ fn finish(
 /// The intervals as lines of name, bounds and unit.
 fn predicted_lines(intervals: &BTreeMap<&'static str, Interval>, summary: &Summary) -> String {
     let mut lines = Vec::new();
-    for Quantity { name, unit, .. } in summary.quantities.iter() {
+    let quantities = summary.quantities.iter().map(|quantity| (quantity.name, quantity.unit, 24));
+    for (name, unit, width) in quantities.chain(summary.motion().map(|(name, _, unit)| (name, unit, 32))) {
         let Some(interval) = intervals.get(name) else { continue };
         if lines.is_empty() {
             let (level, Interval { scenes, stratum, .. }) = (100.0 * interval.level, interval);
@@ -95,7 +96,7 @@ fn predicted_lines(intervals: &BTreeMap<&'static str, Interval>, summary: &Summa
             ));
         }
         let [low, high] = format::interval([interval.low, interval.high], unit);
-        lines.push(format!("  {name:<24} {low:>14} to {high}"));
+        lines.push(format!("  {name:<width$} {low:>14} to {high}"));
     }
     lines.join("\n")
 }

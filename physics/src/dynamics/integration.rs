@@ -267,7 +267,7 @@ pub(super) fn unexplained_momentum(
         let moved = [0, 1].map(|i| system.approach[i][k]);
         let most = moved[0].abs().max(moved[1].abs());
         let [struck, pushed] = moved.map(|moved| moved / most);
-        let along = system.surface_load.as_ref().map_or(0.0, |load| dot(&load.along[k], &load.total()));
+        let along = system.friction_load.as_ref().map_or(0.0, |load| dot(&load.along[k], &load.total()));
         let momentum = (v[k] - along) / most + struck * outer.impulse + pushed * inner.impulse;
         largest = largest.max((momentum + fluid.film_impulse).abs());
     }

@@ -1,7 +1,7 @@
 //! Motion along the surfaces and spin of bodies that touch with friction.
 //!
 //! The normal motion is solved before. What forces along the surface do to it is nothing on a flat, symmetric surface; elsewhere see
-//! [`super::surface_load`].
+//! [`super::friction_load`].
 //! Bodies, modes of what is struck and the contacts' tangential flexibility take part.
 
 use super::surface_modes::{MovingSurfaces, SurfaceMode};

@@ -7,8 +7,8 @@
 //! Contact 0 joins outer body and plate, contact 1 plate and inner body.
 
 use super::centre::LocalCentre;
+use super::friction_load::FrictionLoad;
 use super::moving_body::MovingBody;
-use super::surface_load::SurfaceLoad;
 use crate::actuator::Stack;
 use crate::actuator::circuit::{Account, Circuit};
 use crate::analytical::hertz::HertzImpact;
@@ -108,7 +108,7 @@ pub struct System {
     /// Number of elastic modes of the plate.
     pub modes: usize,
     /// What forces along the surfaces do to the motion across them, where that is known from a run before.
-    pub surface_load: Option<SurfaceLoad>,
+    pub friction_load: Option<FrictionLoad>,
 }
 
 impl System {
@@ -184,7 +184,7 @@ impl System {
             inner_speed: inner.speed,
             first_frequency: elastic.clone().fold(f64::INFINITY, f64::min) / (2.0 * std::f64::consts::PI),
             modes: elastic.count(),
-            surface_load: None,
+            friction_load: None,
             oscillators: coordinates.iter().map(|c| c.oscillator).collect(),
         }
     }

@@ -71,18 +71,20 @@ fn estimates(summary: &Summary) -> Vec<String> {
 }
 
 fn quantities(scene: &Scene, summary: &Summary, prediction: &Prediction) -> Markup {
-    let own = || summary.quantities.iter().filter(|quantity| kind_of(scene).has(scene, quantity.name));
+    let own = summary.quantities.iter().filter(|quantity| kind_of(scene).has(scene, quantity.name));
+    let own = own.map(|quantity| (quantity.name, quantity.value, quantity.unit));
+    let rows = own.chain(summary.motion().map(|(name, value, unit)| (name, Some(value), unit)));
     let shown = |value: Option<f64>, unit| {
         value.map_or_else(|| "not determined".to_owned(), |value| with_unit(value, prefixed(unit, value), 5))
     };
     let found = prediction.as_ref().ok();
     html! { table {
         @if found.is_some() { thead { tr { th {} th { "model" } th { "a converged reference would find (95 %)" } } } }
-        tbody { @for quantity in own() { tr {
-            th scope="row" { (named(quantity.name)) }
-            td { (shown(quantity.value, quantity.unit)) }
+        tbody { @for (name, value, unit) in rows { tr {
+            th scope="row" { (named(name)) }
+            td { (shown(value, unit)) }
             @if let Some(intervals) = found {
-                td { @if let Some(one) = intervals.get(quantity.name) { (format::interval([one.low, one.high], quantity.unit).join(" to ")) } }
+                td { @if let Some(one) = intervals.get(name) { (format::interval([one.low, one.high], unit).join(" to ")) } }
             }
         } } }
     } }

@@ -5,7 +5,7 @@ use crate::material::{Creep, Deformation, Material};
 
 /// What one body adds to every spring.
 #[derive(Debug, Clone)]
-struct Half {
+struct CreepingHalf {
     /// Share of the spring's compliance at once.
     share: f64,
     creep: Creep,
@@ -14,7 +14,7 @@ struct Half {
 /// All springs of a contact; forces are over the stiffness of a spring at once, in m.
 #[derive(Debug, Clone)]
 pub(super) struct CreepingSprings {
-    halves: [Half; 2],
+    halves: [CreepingHalf; 2],
     /// Shape (springs; along the motion, across it; bodies).
     states: Vec<[[Deformation; 2]; 2]>,
     /// Length of a step in s; power that the springs lose along the motion in m^2/s, and what they have lost in m^2.
@@ -26,7 +26,7 @@ pub(super) struct CreepingSprings {
 impl CreepingSprings {
     /// Springs of bodies of these `materials` with these `shares` of the compliance; `None` if both are elastic.
     pub(super) fn new(materials: [&Material; 2], shares: [f64; 2], count: usize) -> Option<Self> {
-        let half = |i: usize| Half { share: shares[i], creep: Creep::new(&materials[i].relaxation) };
+        let half = |i: usize| CreepingHalf { share: shares[i], creep: Creep::new(&materials[i].relaxation) };
         materials.iter().any(|material| !material.relaxation.is_empty()).then(|| Self {
             halves: [half(0), half(1)],
             states: vec![Default::default(); count],

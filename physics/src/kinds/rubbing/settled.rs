@@ -1,11 +1,10 @@
 //! Friction that bends or turns what is struck: the motion across the surfaces and that along them, in turn until both settle.
 
 use super::{Rubbing, StruckSurface};
-use crate::dynamics::StopReason;
 use crate::dynamics::error_control::differences;
+use crate::dynamics::friction_load::FrictionLoad;
 use crate::dynamics::integration::{Integration, Options, Settled};
 use crate::dynamics::sliding::Slid;
-use crate::dynamics::surface_load::SurfaceLoad;
 use crate::dynamics::surface_modes::SurfaceMode;
 use crate::dynamics::system::System;
 use crate::error::Result;
@@ -40,15 +39,12 @@ impl Rubbing {
         let (error_estimate, mut found, mut loaded) = (smooth.error_estimate, smooth, None);
         let (mut error, mut change_before) = (0.0_f64, f64::INFINITY);
         for _ in 0..MOST_ROUNDS {
-            if found.stop == StopReason::Cut {
-                break;
-            }
             let Slid { course, across, .. } = self.slide_in_steps(&found, 1.0)?;
             if across <= NEGLIGIBLE_ACROSS * system.speed {
                 break;
             }
-            let load = SurfaceLoad { course, along: along.clone() };
-            let pushed = System { surface_load: Some(load), ..system.clone() };
+            let load = FrictionLoad { course, along: along.clone() };
+            let pushed = System { friction_load: Some(load), ..system.clone() };
             let next = run(&pushed, &Options { converged, ..rough })?;
             let peaks = [&found, &next].map(|result| result.contacts.map(|contact| contact.force_peak));
             let [velocity, force] = differences(system, [found.velocity, next.velocity], peaks);
@@ -60,9 +56,6 @@ impl Rubbing {
             if error <= SETTLED {
                 break;
             }
-        }
-        if found.stop == StopReason::Cut {
-            return run(system, options);
         }
         let slid = self.slide(&found)?;
         if *options != rough {

@@ -10,14 +10,14 @@ use wide::f64x4;
 
 /// Impulses along the surfaces over time, and the oscillators that they move.
 #[derive(Debug, Clone)]
-pub struct SurfaceLoad {
+pub struct FrictionLoad {
     /// Times in s, ascending, and the impulses in N s until then on what is struck, along x at outer and inner contact.
     pub course: Vec<(f64, [f64; 2])>,
     /// Displacement along x of the surfaces at both contacts per unit of each oscillator's coordinate. Shape (n).
     pub along: Vec<[f64; 2]>,
 }
 
-impl SurfaceLoad {
+impl FrictionLoad {
     /// Impulses in N s until `time` s.
     fn until(&self, time: f64) -> [f64; 2] {
         let after = self.course.partition_point(|(at, _)| *at <= time);
@@ -40,7 +40,7 @@ impl SurfaceLoad {
 /// The load in a run, as kicks between its steps: half of what acts in the step before, and half of what acts in the next one.
 #[derive(Debug)]
 pub(super) struct Kicks<'a> {
-    load: &'a SurfaceLoad,
+    load: &'a FrictionLoad,
     /// Participations along the surfaces, and angular frequencies. Shape (blocks).
     along: [Vec<f64x4>; 2],
     omega: Vec<f64x4>,
@@ -53,7 +53,7 @@ pub(super) struct Kicks<'a> {
 impl<'a> Kicks<'a> {
     /// Of the load of `system`, if it has one.
     pub(super) fn new(system: &'a System) -> Option<Self> {
-        let load = system.surface_load.as_ref()?;
+        let load = system.friction_load.as_ref()?;
         let along = [0, 1].map(|i| in_blocks(&load.along.iter().map(|along| along[i]).collect::<Vec<_>>()));
         let omega = in_blocks(&system.oscillators.iter().map(|o| o.omega).collect::<Vec<_>>());
         Some(Self { load, along, omega, given: [0.0; 2], work: 0.0 })
