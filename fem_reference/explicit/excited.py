@@ -24,12 +24,15 @@ UNLIKE = 0.618
 """Share of the second force in the first vector: with equal shares it would not hold the modes that
 move two opposite contacts together."""
 VECTORS = 16
+MOST_VECTORS = 32
+"""The same where the mode has more than `LOOSE`."""
+LOOSE = 0.1
+"""Share of the last vector in a mode above which its frequency is not known: the error of its
+square is about that of the share."""
 CONVERGED = 1e-4
 """Share of the last vector in a mode at which the search ends. Where the body has several modes of
 one frequency, as a cube has, that is never reached: an unsymmetrical mesh parts them further and
 further. Then the mode counts that had the least share of the last vector."""
-LOWER = 0.98
-"""Of a squared frequency, from which on it is that of another, lower mode."""
 
 
 def excited_frequency(
@@ -59,7 +62,7 @@ def excited_frequency(
     basis: list[Floats] = []
     rows: list[Floats] = []
     squared, doubt = 0.0, 1.0
-    while len(basis) < VECTORS and doubt > CONVERGED:
+    while doubt > CONVERGED and len(basis) < (VECTORS if doubt <= LOOSE else MOST_VECTORS):
         if basis:
             vector = static_shape(loop, body, mass * basis[-1], floating, precondition)
         for known in (*basis, *basis):  # twice is enough (Parlett, 6.9)
@@ -72,9 +75,9 @@ def excited_frequency(
         moved = np.array([[loop.dot(load, known) for known in basis] for load in loads]) @ modes
         for k in np.flatnonzero(np.abs(moved).max(axis=0) * whole > EXCITED)[:1]:
             share = abs(float(modes[-1, k]))
-            if share < doubt or squares[k] < LOWER * squared:
+            if share < doubt:
                 squared, doubt = float(squares[k]), share
-    if squared == 0.0:
+    if squared == 0.0 or doubt > LOOSE:
         raise SolverError("the first eigenfrequency that the contacts excite was not found")
     return math.sqrt(squared) / (2.0 * math.pi)
 

@@ -187,7 +187,7 @@ def test_what_the_deck_does_not_describe_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("opposite", [False, True])
 @pytest.mark.parametrize("program", ["explicit", pytest.param("CalculiX", marks=needs_calculix)])
 def test_the_first_frequency_is_one_that_the_contact_excites(
-    program: str, opposite: bool, tmp_path: Path
+    program: str, opposite: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A free beam, 3 mm wide and 5 mm high, struck from above: not its lateral mode.
 
@@ -202,7 +202,9 @@ def test_the_first_frequency_is_one_that_the_contact_excites(
     scene = parse_scene(document(file, [at, *below], []))
     made = on_mesh(scene, file, 0.4)
     if program == "CalculiX":
-        found = calculix.first_frequency(made, tmp_path / "modes")
+        # the lateral mode alone is not enough
+        monkeypatch.setattr(calculix, "MODES", (1, 16))
+        found = calculix.first_frequency(made, tmp_path)
     else:
         loop = make_loop(made.made.model, MPI.COMM_SELF, 1)
         found = Bodies(loop, made.made).first_frequency()
