@@ -296,11 +296,11 @@ fn unlike_materials_rebound_as_finite_elements_have_it() {
     }
 }
 
-/// Surface velocity after over mu times normal velocity of a steel ball on a rigid plane: finite elements of Wu, Thornton and Li, in
-/// Chung and Ooi's fifth test (Granular Matter 13 (2011) 643), read off its figure to 0.05.
+/// Surface velocity and the spin's after the impact of a steel ball on a rigid plane, over mu times the normal velocity: finite elements of
+/// Wu, Thornton and Li, in Chung and Ooi's fifth test (Granular Matter 13 (2011) 643), read off its figures to 0.05.
 #[test]
 fn a_ball_on_a_rigid_plane_is_chung_and_ooi_s_fifth_test() {
-    let points = [
+    let velocities = [
         [0.272, -0.027],
         [0.876, -0.08],
         [1.553, -0.373],
@@ -313,8 +313,18 @@ fn a_ball_on_a_rigid_plane_is_chung_and_ooi_s_fifth_test() {
         [9.118, 2.147],
         [12.356, 5.427],
     ];
+    let spins = [
+        [0.318, 0.187],
+        [0.890, 0.665],
+        [1.532, 1.355],
+        [2.277, 2.321],
+        [3.301, 3.441],
+        [4.688, 4.569],
+        [7.029, 4.941],
+        [18.80, 4.975],
+    ];
     let (friction, normal, radius) = (0.3, 5.0_f64, 1e-5);
-    for [before, after] in points {
+    let found = |before: f64| {
         let along = before * friction * normal;
         let summary = run(&format!(
             "name = \"test\"\nkind = \"impact\"\nfriction = {friction}\n[materials.steel]\nyoungs_modulus = 208e9\npoisson_ratio = 0.3\n\
@@ -323,8 +333,15 @@ fn a_ball_on_a_rigid_plane_is_chung_and_ooi_s_fifth_test() {
             along.atan2(normal)
         ));
         let [velocity, spin] = sideways(&summary);
-        let found = (velocity - radius * spin) / (friction * normal);
-        assert!((found - after).abs() < 0.1, "{before}: {found} {after}");
+        [velocity - radius * spin, radius * spin].map(|velocity| velocity / (friction * normal))
+    };
+    for [before, after] in velocities {
+        let [velocity, _] = found(before);
+        assert!((velocity - after).abs() < 0.1, "{before}: {velocity} {after}");
+    }
+    for [before, after] in spins {
+        let [_, spin] = found(before);
+        assert!((spin - after).abs() < 0.07, "{before}: {spin} {after}");
     }
 }
 

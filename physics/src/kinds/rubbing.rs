@@ -118,24 +118,24 @@ impl Rubbed {
     pub(super) fn warnings(&self) -> Vec<String> {
         let across = (self.across > NOTABLE_ACROSS && self.unsettled.is_none()).then(|| {
             format!(
-                "friction bends or turns what is struck, which the models omit: forces and efficiency may be wrong by about {:.1} % (velocity of the contacts across the surfaces over that of the outer body)",
+                "friction bends or turns what is struck, which the model omits: forces and efficiency may be wrong by about {:.1} % (normal velocity that friction gives the contacts, over that of the outer body)",
                 100.0 * self.across
             )
         });
         let unsettled = self.unsettled.filter(|error| *error > settled::SETTLED).map(|error| {
             format!(
-                "friction bends or turns what is struck, and the forces across and along the surfaces have not settled: velocities and force peaks are uncertain by {error:.0e}"
+                "friction bends or turns what is struck, and the normal and tangential forces have not converged: velocities and force peaks are uncertain by {error:.0e}"
             )
         });
         let error = (self.error > SETTLED).then(|| {
             format!(
-                "velocities along the surfaces are uncertain by {:.0e} of the speed: quick modes of what is struck are not resolved",
+                "tangential velocities are uncertain by {:.0e} of the speed: high-frequency modes of what is struck are not resolved",
                 self.error
             )
         });
         let aside = (self.aside > NOTABLE_ASIDE).then(|| {
             format!(
-                "the surfaces of the body also move at a right angle to x, at up to {:.1} % of the speed, where the models omit friction: turn the body about z so that they move along x",
+                "the surfaces of the body also move perpendicular to x, at up to {:.1} % of the speed; the model omits friction in that direction: rotate the body about z so that they move along x",
                 100.0 * self.aside
             )
         });
