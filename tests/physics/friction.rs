@@ -24,9 +24,13 @@ const SPEED: f64 = 3.9;
 const FRICTION: f64 = 0.092;
 
 fn run(text: &str) -> Summary {
+    run_model(Model::C, text)
+}
+
+fn run_model(model: Model, text: &str) -> Summary {
     let scene = Scene::parse("test.toml", text).expect("valid");
     let kind: &dyn Kind = kinds::of(&scene);
-    kind.model(&scene, Model::C, None).expect("model").run(1e-9).expect("run")
+    kind.model(&scene, model, None).expect("model").run(1e-9).expect("run")
 }
 
 /// A ball of `material` with further `keys` strikes a wall of glass at `degrees`.
@@ -435,4 +439,25 @@ fn infinite_friction_sticks_and_unknown_inertia_is_refused() {
     assert!(error.contains("moment_of_inertia"), "{error}");
     let [_, spin] = sideways(&run(&format!("{compact}moment_of_inertia = \"2 g*mm^2\"\n")));
     assert!(spin > 0.0);
+}
+
+/// An oblique impact off the centre of a plate: results go over into those without friction, as the plate's normal turns in both. A body that
+/// slides far away from where it struck is warned of.
+#[test]
+fn little_friction_is_nearly_none_off_centre() {
+    let text = include_str!("../../scenes/validation/off-centre-oblique.toml");
+    let run = |text: &str| run_model(Model::B, text);
+    let with = |friction: f64| run(&text.replace("friction    = 0.3", &format!("friction = {friction:e}")));
+    let (none, little) = (with(0.0), with(1e-7));
+    let [smooth, rough] = [&none, &little].map(|summary| summary.sideways.expect("oblique"));
+    // what so little friction does itself
+    let near = 2.0 * 1e-7 * 0.55;
+    assert!((smooth.outer_tangential_velocity_final - rough.outer_tangential_velocity_final).abs() < near);
+    let [smooth, rough] =
+        [smooth, rough].map(|of| of.inner_tangential_velocity_final.expect("an inner body"));
+    assert!((smooth - rough).abs() < near && smooth != 0.0, "{smooth} {rough}");
+    let slides = |summary: &Summary| summary.warnings.iter().any(|warning| warning.contains("slides"));
+    assert!(!slides(&none));
+    let glancing = text.replace("30 deg", "85 deg").replace("\"550 mm/s\"", "\"20 m/s\"");
+    assert!(slides(&run(&glancing)));
 }

@@ -5,7 +5,7 @@ mod settled;
 use crate::contact::{Hertz, Press, TangentialContact};
 use crate::dynamics::StopReason;
 use crate::dynamics::integration::{Integration, Options};
-use crate::dynamics::sliding::{Slid, Sliding, TurningBody};
+use crate::dynamics::sliding::{Slid, Sliding, Tilt, TurningBody};
 use crate::dynamics::surface_modes::{MovingSurfaces, SurfaceMode};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
@@ -93,6 +93,8 @@ pub(super) struct Rubbing {
     pub(super) outer: Outer,
     pub(super) inner: Option<Inner>,
     pub(super) struck: StruckSurface,
+    /// See [`Tilt`]; known of plates.
+    pub(super) tilt: Option<Tilt>,
     /// Modes that move its surfaces at a right angle to the x direction, which are left out; none of a plate or a wall.
     pub(super) aside: Vec<SurfaceMode>,
     pub(super) contacts: [Touching; 2],
@@ -202,9 +204,14 @@ impl Rubbing {
         self.frictions().iter().any(|friction| *friction > 0.0)
     }
 
-    /// `options` that keep the contact forces of `system` as well, where there is friction.
+    /// Whether forces act along the surfaces.
+    fn is_pushed(&self) -> bool {
+        self.has_friction() || self.tilt.is_some() && self.struck.moves()
+    }
+
+    /// `options` that keep the contact forces of `system` as well, where forces act along the surfaces.
     pub(super) fn keeping_forces(&self, system: &System, options: &Options) -> Options {
-        if !self.has_friction() {
+        if !self.is_pushed() {
             return *options;
         }
         let interval = system.hertz_impact().duration() / SAMPLES_PER_CONTACT;
@@ -225,7 +232,7 @@ impl Rubbing {
         let spins = [self.outer.turning.spin, inner.map_or(0.0, |inner| inner.turning.spin)];
         let along = self.outer.speed * self.outer.angle.sin();
         let slid = match &result.friction {
-            _ if !self.has_friction() => Slid::default(),
+            _ if !self.is_pushed() => Slid::default(),
             Some(friction) => friction.slid.clone(),
             None => self.slide(result)?,
         };
@@ -237,11 +244,15 @@ impl Rubbing {
             _ => 0.0 - at_inner,
         };
         let per_mass = |body: Option<TurningBody>| body.map_or(0.0, |body| 1.0 / body.mass);
+        let [tilted_outer, tilted_inner] = slid.tilted;
         let per_inertia = |body: Option<TurningBody>| body.map_or(0.0, |body| body.arm / body.inertia);
         Ok(Some(Rubbed {
             sideways: Sideways {
-                outer_tangential_velocity_final: along - at_outer * per_mass(outer),
-                inner_tangential_velocity_final: self.inner.as_ref().map(|_| pushed * per_mass(inner)),
+                outer_tangential_velocity_final: along + (tilted_outer - at_outer) * per_mass(outer),
+                inner_tangential_velocity_final: self
+                    .inner
+                    .as_ref()
+                    .map(|_| (pushed + tilted_inner) * per_mass(inner)),
                 outer_spin_final: spins[0] + at_outer * per_inertia(outer),
                 inner_spin_final: self.inner.as_ref().map(|_| spins[1] + pushed * per_inertia(inner)),
             },
@@ -306,10 +317,12 @@ impl Rubbing {
             let widest = presses[i].iter().map(|press| press.radius).fold(0.0, f64::max);
             // surfaces that do not move along each other stay so, unless a plate between moves them
             let moves = velocity[i] != 0.0 || !modes.is_empty();
-            (moves && widest > 0.0).then(|| TangentialContact::new([tip, face], frictions[i], widest))
+            let rubs = frictions[i] > 0.0 && moves && widest > 0.0;
+            rubs.then(|| TangentialContact::new([tip, face], frictions[i], widest))
         };
         let contacts = [contact(0), contact(1)];
-        Ok(Sliding { contacts, mobility: self.mobilities(), modes, velocity }.slide(time, &presses, finer))
+        let sliding = Sliding { contacts, mobility: self.mobilities(), modes, velocity, tilt: self.tilt };
+        Ok(sliding.slide(time, &presses, finer))
     }
 
     /// Largest speed in m/s at which what is struck moves its rubbing surfaces at a right angle to x.

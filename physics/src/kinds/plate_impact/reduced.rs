@@ -8,6 +8,7 @@ use super::shared::SharedBodies;
 use super::{MAX_MODES, PlateImpact};
 use crate::body::cache::Cache;
 use crate::dynamics::memory::Memory;
+use crate::dynamics::sliding::Tilt;
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
@@ -44,7 +45,9 @@ pub struct Reduced {
 /// The bodies of `setup` that move along its plate in `system`, if they do.
 fn rubbing(setup: &PlateImpact, system: &System) -> Option<Rubbing> {
     let PlateImpact { outer, inner, plate, .. } = setup;
+    let masses = [outer.shape.mass(&outer.material), inner.shape.mass(&inner.material)];
     moves_along(outer, Some(inner)).then(|| Rubbing {
+        tilt: Some(Tilt { arm: 0.5 * plate.thickness, masses }),
         outer: outer.clone(),
         inner: Some(inner.clone()),
         struck: StruckSurface::plate(plate, outer.offset, system),

@@ -138,6 +138,7 @@ mod tests {
                 outer,
                 inner: None,
                 struck: StruckSurface::Moving(modes),
+                tilt: None,
                 aside: Vec::new(),
                 contacts: [contact.clone(), contact],
             };

@@ -40,7 +40,7 @@ impl ContactModel {
         }
         let aside = self.between.as_ref().map_or_else(Vec::new, |between| between.aside.clone());
         let (outer, inner, contacts) = (outer.clone(), inner.clone(), self.touching(scene));
-        Ok(Some(Rubbing { outer, inner, struck: surface, aside, contacts }))
+        Ok(Some(Rubbing { outer, inner, struck: surface, tilt: None, aside, contacts }))
     }
 
     /// Both contacts of `scene`.

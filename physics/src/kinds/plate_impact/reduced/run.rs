@@ -21,7 +21,7 @@ use crate::numerics::stopwatch::Stopwatch;
 use crate::result::{
     self, BenderSummary, CUT, ElasticLimit, History, Outcome, StackSummary, Summary, Table, limit,
 };
-use crate::scene::{self, Shape};
+use crate::scene::{self, Outer, Shape};
 
 /// Samples within steps and flights of a history that only the limits need: the deflection is sampled.
 const JUDGED_SAMPLES: usize = 1 << 12;
@@ -30,8 +30,26 @@ const PEAK_ERROR: f64 = 0.1;
 /// Error of the time integration in runs that compare meshes, and error by the mesh from which on there is a warning.
 const MESH_TOLERANCE: f64 = 1e-6;
 const LARGEST_MESH_ERROR: f64 = 0.01;
+/// Change of forces by the way that a contact moves, relative, from which on there is a warning.
+const NOTABLE_WAY: f64 = 0.01;
 /// Share of a bender's moment at the strike from which on there is a warning.
 const MOMENT_LEFT: f64 = 0.01;
+
+/// A sentence where the outer body of `setup`, off-centre, slides along the plate during the contact that `result` has, so far that the plate
+/// answers otherwise: as its first mode (1 - r^2/R^2)^2 changes over half of the way.
+fn slides_away(setup: &PlateImpact, result: &Integration, rubbed: &Rubbed) -> Option<String> {
+    let Outer { speed, angle, offset, .. } = setup.outer;
+    let along = 0.5 * (speed * angle.sin() + rubbed.sideways.outer_tangential_velocity_final);
+    let way = along * result.contacts[0].end;
+    let change = 2.0 * offset * way.abs() / (setup.plate.radius.powi(2) - offset * offset);
+    (change > NOTABLE_WAY).then(|| {
+        format!(
+            "the outer body slides {:.2} mm along the plate, but the model keeps the contact in place: forces and efficiency may be wrong by about {:.0} %",
+            1e3 * way.abs(),
+            100.0 * change
+        )
+    })
+}
 
 /// Change of the inner body's velocity over the impact speed, in tolerances, below which its results are the integration's error.
 fn unresolved(system: &System, result: &Integration, tolerance: f64) -> Option<String> {
@@ -291,6 +309,8 @@ impl Reduced {
         }));
         let rubbed = self.rubbed(result)?;
         warnings.extend(rubbed.iter().flat_map(Rubbed::warnings));
+        let given = self.scene.plate_impact()?;
+        warnings.extend(rubbed.iter().filter_map(|rubbed| slides_away(given, result, rubbed)));
         if self.memory.is_some() {
             let contacts = touching(setup, system);
             warnings.extend(omitted_stiffening(contacts, &setup.outer, Some(&setup.inner)));
