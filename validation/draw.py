@@ -217,7 +217,10 @@ def off_centre(point: Point) -> Table:
 
 
 def oblique(point: Point) -> Table:
-    """The outer body strikes at an angle, with friction; a third of them away from the centre."""
+    """The outer body strikes at an angle, with friction; a third of them away from the centre.
+
+    The duration is drawn over the first period of the plate with its own radius, which is cut then.
+    """
     # small contacts on thin plates take hours
     scene = _of_solids(dry(point, (0.1, 0.6), (0.03, 0.3), keeps_patch=True))
     plate, outer = scene["plate"], scene["outer"]

@@ -38,6 +38,8 @@ ORDER = 2.0
 """Of the limits in the table, that of bilinear elements. A reference's own limit takes 1.5, which
 keeps its bands safe; there, on the meshes of `coarse`, force peaks lie .3 to .5 % below those of
 finer meshes, with 2 less than .1 % (`finer.py`)."""
+LAST = 10.0
+"""Seconds that a program has to end what it has started."""
 CONTACTS = ("outer_contacts", "inner_contacts")
 """Numbers of contacts, which seal seats do not count."""
 
@@ -74,6 +76,9 @@ def _run(command: Sequence[str | Path], longest: float | None) -> subprocess.Com
             output, errors = started.communicate(timeout=longest)
         except subprocess.TimeoutExpired:
             started.terminate()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                started.wait(LAST)
+            started.kill()
             raise
     return subprocess.CompletedProcess(command, started.returncode, output, errors)
 

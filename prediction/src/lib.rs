@@ -240,12 +240,14 @@ fn place<Name>(
 /// negligible inner force and of spins: nothing is predicted of them.
 pub fn scale(quantity: &str, value: impl Fn(&str) -> Option<f64>, speed: f64) -> Option<f64> {
     let own = value(quantity)?.abs();
+    if quantity.ends_with(SPIN) {
+        return None;
+    }
     Some(match quantity {
         "efficiency" => own.max(MINOR),
         "inner_force_peak" => {
             Some(own).filter(|own| *own >= MINOR * value("outer_force_peak").unwrap_or(0.0))?
         }
-        _ if quantity.ends_with(SPIN) => None?,
         _ if quantity.ends_with(VELOCITY) => Some(speed).filter(|speed| speed.is_finite())?,
         _ if quantity.ends_with(RESTITUTION) => 1.0,
         _ if quantity.starts_with(COMPONENT) => value("sphere_speed")?,

@@ -461,3 +461,22 @@ fn little_friction_is_nearly_none_off_centre() {
     let glancing = text.replace("30 deg", "85 deg").replace("\"550 mm/s\"", "\"20 m/s\"");
     assert!(slides(&run(&glancing)));
 }
+
+/// Where friction changes a force to more than its double, in a thick plate with a small body behind, there is a result.
+#[test]
+fn strong_friction_off_centre_has_a_result() {
+    let summary = run_model(
+        Model::B,
+        r#"
+name = "test"
+kind = "plate-impact"
+friction = 1.5
+materials.steel = { youngs_modulus = 210e9, poisson_ratio = 0.3, density = 7780 }
+plate = { radius = "6 mm", thickness = "4 mm", edge = "clamped", material = "steel" }
+outer = { kind = "sphere", radius = "6 mm", material = "steel", speed = "100 mm/s", offset = "0.6 mm", angle = "85 deg" }
+inner = { kind = "sphere", radius = "2 mm", material = "steel" }
+"#,
+    );
+    assert!(summary.value("outer_force_peak").is_some_and(|peak| peak > 0.0));
+    assert!(summary.energy_residual.is_some_and(|residual| residual < 1e-6));
+}

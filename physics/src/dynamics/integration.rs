@@ -4,6 +4,7 @@
 use super::contact_balance::ContactBalance;
 use super::driver::StopReason;
 use super::free_flight;
+use super::friction_load::GivenLoad;
 use super::sliding::Slid;
 use super::system::{System, dot};
 use crate::contact::Press;
@@ -166,14 +167,14 @@ pub(super) struct Closing<'a> {
     pub(super) steps: u64,
     /// Heat in the drive of a stack in J, if it was summed up.
     pub(super) heat: Option<f64>,
-    /// Work of a load along the surfaces, J.
-    pub(super) surface_work: f64,
+    /// What a load along the surfaces did.
+    pub(super) along: GivenLoad,
 }
 
 impl Closing<'_> {
     /// The results of the run with the `history` that was kept.
     pub(super) fn integration(self, history: Option<History>) -> Integration {
-        let Self { system, v, ref contacts, fluid, surface_work, .. } = self;
+        let Self { system, v, ref contacts, fluid, along, .. } = self;
         let velocity = system.of_bodies(v);
         let [start_q, start_v] = &system.start;
         // of a stack's circuit the coordinates have no energy each
@@ -189,7 +190,7 @@ impl Closing<'_> {
         let unaccounted = if damped {
             self.stored - contact_work + dissipated + fluid.work
         } else {
-            end + self.stored - initial + dissipated - surface_work
+            end + self.stored - initial + dissipated - along.work
         };
         let supplied = self.supplied();
         // with its heat the whole ledger of a stack can be told, without it that of the contacts alone
@@ -206,10 +207,11 @@ impl Closing<'_> {
             contacts: self.contacts,
             energy_residual: unaccounted.abs() / initial,
             energy_gained: unaccounted / initial,
-            momentum_residual: unexplained_momentum(system, v, contacts, &fluid) / system.initial_momentum(),
+            momentum_residual: unexplained_momentum(system, v, contacts, &fluid, &along)
+                / system.initial_momentum(),
             losses: Losses {
                 plate_damping: if damped {
-                    initial - end - contact_work + fluid.work + surface_work
+                    initial - end - contact_work + fluid.work + along.work
                 } else {
                     0.0
                 },
@@ -252,6 +254,7 @@ pub(super) fn unexplained_momentum(
     v: &[f64],
     [outer, inner]: &[ContactBalance; 2],
     fluid: &FluidAccount,
+    along: &GivenLoad,
 ) -> f64 {
     let velocity = system.of_bodies(v);
     let fluid_impulse = fluid.film_impulse + fluid.drag_impulse;
@@ -267,8 +270,9 @@ pub(super) fn unexplained_momentum(
         let moved = [0, 1].map(|i| system.approach[i][k]);
         let most = moved[0].abs().max(moved[1].abs());
         let [struck, pushed] = moved.map(|moved| moved / most);
-        let along = system.friction_load.as_ref().map_or(0.0, |load| dot(&load.along[k], &load.total()));
-        let momentum = (v[k] - along) / most + struck * outer.impulse + pushed * inner.impulse;
+        let pushed_along =
+            system.friction_load.as_ref().map_or(0.0, |load| dot(&load.along[k], &along.impulse));
+        let momentum = (v[k] - pushed_along) / most + struck * outer.impulse + pushed * inner.impulse;
         largest = largest.max((momentum + fluid.film_impulse).abs());
     }
     largest

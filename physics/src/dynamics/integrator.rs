@@ -31,8 +31,6 @@ const TURN_PER_STEP: f64 = 0.1;
 const CONVERGED: f64 = 0.1;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
-/// The same of all steps at least where kicks come between them, of which they take the mean.
-const KICKED_LEVEL: i32 = 5;
 
 /// Integrates the impact.
 ///
@@ -166,8 +164,8 @@ impl<'a> DryStepper<'a> {
                 return Err(self.stuck(solved));
             }
             self.length.limit();
-            if self.kicks.is_some() {
-                self.length.limit_to_level(KICKED_LEVEL);
+            if let Some(kicks) = &self.kicks {
+                self.length.limit_to_level(kicks.level());
             }
             let h = self.length.length();
             let rest = self.end_time - self.time;
@@ -356,7 +354,7 @@ impl<'a> DryStepper<'a> {
             fluid: FluidAccount::default(),
             steps: self.steps,
             heat: self.heat,
-            surface_work: self.kicks.map_or(0.0, |kicks| kicks.work),
+            along: self.kicks.map(|kicks| kicks.given).unwrap_or_default(),
         };
         closing.integration(self.recorder.map(Recorder::finish))
     }

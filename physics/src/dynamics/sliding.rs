@@ -70,13 +70,15 @@ pub struct Slid {
     pub across: f64,
     /// Estimated error of the velocities along the surfaces, over the speed; 0 if it was not looked for.
     pub error: f64,
+    /// Steps over those that seem enough.
+    pub finer: f64,
 }
 
 impl Sliding<'_> {
     /// Moves the bodies while they are pressed together as `presses` has it at every `time` in s, in `finer` times as many steps as seem enough.
     /// With fewer not every sample counts. Shapes (samples), (contacts, samples).
     pub fn slide(mut self, time: &[f64], presses: &[Vec<Press>; 2], finer: f64) -> Slid {
-        let mut slid = Slid { course: vec![(0.0, [0.0; 2])], ..Slid::default() };
+        let mut slid = Slid { course: vec![(0.0, [0.0; 2])], finer, ..Slid::default() };
         let mut velocity = self.velocity;
         // their motion by the forces across them, which are known, and by those along them
         let mut pressed = MovingSurfaces::new(self.modes);

@@ -199,7 +199,8 @@ pub(super) fn uncertain(result: &Integration, tolerance: f64) -> Option<String> 
 
 /// Contacts that nearly join, part or touch once more, so that their number may be another.
 pub(super) fn uncountable(result: &Integration, tolerance: f64) -> Vec<String> {
-    let error = result.error_estimate.unwrap_or(0.0).max(tolerance);
+    let settled = result.friction.as_ref().map(|friction| friction.error).filter(|error| error.is_finite());
+    let error = result.error_estimate.unwrap_or(0.0).max(tolerance).max(settled.unwrap_or(0.0));
     let near = |contact: &ContactBalance| contact.least_turn <= error_control::ENOUGH * error;
     let bodies = ["outer", "inner"].into_iter().zip(&result.contacts);
     bodies

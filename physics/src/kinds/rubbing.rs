@@ -64,7 +64,7 @@ impl StruckSurface {
 
     /// Whether it moves by itself.
     fn moves(&self) -> bool {
-        matches!(self, Self::Moving(modes) if !modes.is_empty())
+        matches!(self, Self::Moving(modes) if modes.iter().any(|mode| mode.along != [0.0; 2]))
     }
 
     /// Whether elastic modes move it along itself.
@@ -125,8 +125,12 @@ impl Rubbed {
             )
         });
         let unsettled = self.unsettled.filter(|error| *error > settled::SETTLED).map(|error| {
+            let how = match error.is_finite() {
+                true => format!("uncertain by {error:.0e}"),
+                false => "not reliable".into(),
+            };
             format!(
-                "friction bends or turns what is struck, and the normal and tangential forces have not converged: velocities and force peaks are uncertain by {error:.0e}"
+                "friction bends or turns what is struck, and the normal and tangential forces have not converged: velocities and force peaks are {how}"
             )
         });
         let error = (self.error > SETTLED).then(|| {
@@ -188,6 +192,11 @@ pub(super) fn omitted_stiffening(
     (most > NOTABLE_STIFFENING).then(|| {
         format!("friction makes the contacts stiffer by up to {:.1} %, which the model omits", 100.0 * most)
     })
+}
+
+/// Whether friction's effect on the motion across the surfaces is known to `enough`, or as well as it ever is.
+pub(super) fn is_settled(result: &Integration, enough: f64) -> bool {
+    result.friction.as_ref().is_none_or(|friction| friction.error <= enough.max(settled::SETTLED))
 }
 
 /// Whether bodies that move along the surfaces they meet rub on them.
@@ -280,8 +289,11 @@ impl Rubbing {
         let mut coarse = self.slide_in_steps(result, 0.5)?;
         for finer in FINER {
             let fine = self.slide_in_steps(result, finer)?;
-            let change =
-                |i: usize| mobility[i] * (fine.impulse[i] - coarse.impulse[i]).abs() / self.outer.speed;
+            let change = |i: usize| {
+                let tilted =
+                    self.tilt.map_or(0.0, |tilt| (fine.tilted[i] - coarse.tilted[i]) / tilt.masses[i]);
+                (mobility[i] * (fine.impulse[i] - coarse.impulse[i]).abs() + tilted.abs()) / self.outer.speed
+            };
             let error = change(0).max(change(1)) / 3.0;
             coarse = Slid { error, ..fine };
             if error <= SETTLED {

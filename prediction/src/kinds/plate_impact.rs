@@ -58,7 +58,9 @@ pub(super) fn stratum(setup: &PlateImpact) -> Result<&'static str, String> {
 pub(super) fn numbers(setup: &PlateImpact) -> Vec<(&'static str, f64)> {
     let (plate, outer, inner) = (&setup.plate, &setup.outer, &setup.inner);
     let fluid = setup.fluid.as_ref();
-    let angle = Some(("angle of the velocity in rad", outer.angle)).filter(|(_, angle)| *angle != 0.0);
+    // at the centre either sign is the other's mirror image
+    let angle = if outer.offset == 0.0 { outer.angle.abs() } else { outer.angle };
+    let angle = (angle != 0.0).then_some(("angle of the velocity in rad", angle));
     let numbers = [
         ("thickness over radius of the plate", plate.thickness / plate.radius),
         ("Poisson's ratio of the plate", plate.material.poisson_ratio),

@@ -11,6 +11,7 @@ use super::{CHANGE, CreepingContacts, Ran};
 use crate::contact::Press;
 use crate::dynamics::contact_balance::ContactBalance;
 use crate::dynamics::driver::{Stepper, StopReason};
+use crate::dynamics::friction_load::GivenLoad;
 use crate::dynamics::integration::{FluidAccount, Integration, NEGLIGIBLE, Options, unexplained_momentum};
 use crate::dynamics::recorder::{CURVES, sample};
 use crate::dynamics::system::System;
@@ -385,8 +386,13 @@ impl<'a> MemoryStepper<'a> {
             contacts: self.contacts,
             energy_residual: residual / initial,
             energy_gained: gained / initial,
-            momentum_residual: unexplained_momentum(system, &v, &self.contacts, &FluidAccount::default())
-                / system.initial_momentum(),
+            momentum_residual: unexplained_momentum(
+                system,
+                &v,
+                &self.contacts,
+                &FluidAccount::default(),
+                &GivenLoad::default(),
+            ) / system.initial_momentum(),
             losses: Losses {
                 plate_damping: self.modal_loss + plate_loss,
                 // every law knows what it has dissipated, which is never negative

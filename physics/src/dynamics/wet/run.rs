@@ -14,6 +14,7 @@ use crate::dynamics::contact_balance::{ContactBalance, StepCourse};
 use crate::dynamics::driver::{self, Stepper};
 use crate::dynamics::force_peak::SolvedStep;
 use crate::dynamics::free_flight;
+use crate::dynamics::friction_load::GivenLoad;
 use crate::dynamics::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::step_bounds::{AdaptedLength, EnergyAccount, StepBounds, base_step, momentum_scale};
@@ -83,7 +84,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         contacts: stepper.contacts,
         fluid: stepper.booked,
         steps: stepper.steps,
-        surface_work: 0.0,
+        along: GivenLoad::default(),
     };
     Ok(closing.integration(stepper.recorder.map(Recorder::finish)))
 }

@@ -16,7 +16,7 @@ use crate::dynamics::system::System;
 use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, integrate};
 use crate::error::{Error, Result};
 use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
-use crate::kinds::rubbing::{Rubbed, Rubbing, omitted_stiffening};
+use crate::kinds::rubbing::{Rubbed, Rubbing, is_settled, omitted_stiffening};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::Material;
 use crate::numerics::stopwatch::Stopwatch;
@@ -423,7 +423,8 @@ impl SeriesModel for ContactModel {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
-            converged: result.error_estimate.is_none_or(|error| error <= enough),
+            converged: result.error_estimate.is_none_or(|error| error <= enough)
+                && is_settled(&result, enough),
         })
     }
 }

@@ -47,7 +47,8 @@ fn rubbing(setup: &PlateImpact, system: &System) -> Option<Rubbing> {
     let PlateImpact { outer, inner, plate, .. } = setup;
     let masses = [outer.shape.mass(&outer.material), inner.shape.mass(&inner.material)];
     moves_along(outer, Some(inner)).then(|| Rubbing {
-        tilt: Some(Tilt { arm: 0.5 * plate.thickness, masses }),
+        // a free plate also moves along itself as a whole
+        tilt: (plate.edge != Edge::Free).then_some(Tilt { arm: 0.5 * plate.thickness, masses }),
         outer: outer.clone(),
         inner: Some(inner.clone()),
         struck: StruckSurface::plate(plate, outer.offset, system),

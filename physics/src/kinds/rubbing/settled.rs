@@ -11,9 +11,12 @@ use crate::error::Result;
 
 /// Velocity across the surfaces by friction, over the speed, up to which its effect is negligible.
 const NEGLIGIBLE_ACROSS: f64 = 1e-4;
-/// Error of velocities, over the speed, and force peaks, relative, by ending the rounds, that is in order, and rounds at most.
-pub(super) const SETTLED: f64 = 1e-4;
+/// Error of velocities, over the speed, and force peaks, relative, that is in order.
+pub(in crate::kinds) const SETTLED: f64 = 1e-4;
+/// Rounds at most.
 const MOST_ROUNDS: usize = 12;
+/// Least levels of the steps between which the load acts as kicks: that of the rounds, and the finest that is tried.
+const LEVELS: [i32; 2] = [5, 9];
 
 impl Rubbing {
     /// The impact of `system` that `run` finds, with friction's effect on the motion across the surfaces if there is one, and the contact
@@ -31,37 +34,64 @@ impl Rubbing {
             StruckSurface::Moving(modes) if self.has_friction() && modes.iter().any(couples) => modes,
             _ => return run(system, options),
         };
-        let along = participations(system, modes);
-        let rough = self.keeping_forces(system, &Options { sample_interval: None, ..*options });
-        let smooth = run(system, &rough)?;
+        let with_forces = self.keeping_forces(system, &Options { sample_interval: None, ..*options });
+        let smooth = run(system, &with_forces)?;
+        let mut slid = self.slide(&smooth)?;
         // friction changes little: steps that are right without it are right with it
         let converged = smooth.converged.or(options.converged);
-        let (error_estimate, mut found, mut loaded) = (smooth.error_estimate, smooth, None);
-        let (mut error, mut change_before) = (0.0_f64, f64::INFINITY);
-        for _ in 0..MOST_ROUNDS {
-            let Slid { course, across, .. } = self.slide_in_steps(&found, 1.0)?;
-            if across <= NEGLIGIBLE_ACROSS * system.speed {
-                break;
+        let (once, error_estimate) = (Options { converged, ..with_forces }, smooth.error_estimate);
+        let [first, finest] = LEVELS;
+        let load = FrictionLoad { course: Vec::new(), along: participations(system, modes), level: first };
+        let mut kicked = System { friction_load: Some(load), ..system.clone() };
+        let (mut found, mut error, mut change_before) = (smooth, 0.0_f64, f64::NAN);
+        if slid.across > NEGLIGIBLE_ACROSS * system.speed {
+            for _ in 0..MOST_ROUNDS {
+                let (next, change) = self.kicked(&mut kicked, first, (&found, &slid), &once, &run)?;
+                // each round leaves the same share of the change before
+                let share = if change == 0.0 { 0.0 } else { change / change_before };
+                error = if share < 1.0 { change * share / (1.0 - share) } else { f64::INFINITY };
+                slid = Slid { error: slid.error, ..self.slide_in_steps(&next, slid.finer)? };
+                (found, change_before) = (next, change);
+                if error <= 0.5 * SETTLED {
+                    break;
+                }
             }
-            let load = FrictionLoad { course, along: along.clone() };
-            let pushed = System { friction_load: Some(load), ..system.clone() };
-            let next = run(&pushed, &Options { converged, ..rough })?;
-            let peaks = [&found, &next].map(|result| result.contacts.map(|contact| contact.force_peak));
-            let [velocity, force] = differences(system, [found.velocity, next.velocity], peaks);
-            let change = velocity.max(force);
-            // each round leaves the same share of the change before
-            let share = (change / change_before).clamp(change, 1.0);
-            error = change * share / (1.0 - share).max(share);
-            (found, loaded, change_before) = (next, Some(pushed), change);
-            if error <= SETTLED {
-                break;
+            // kicks are of second order in the steps between them
+            for level in first + 1..=finest {
+                let (next, change) = self.kicked(&mut kicked, level, (&found, &slid), &once, &run)?;
+                found = next;
+                if error + change / 3.0 <= SETTLED || level == finest {
+                    error += change / 3.0;
+                    break;
+                }
             }
+            slid = Slid { error: slid.error, ..self.slide_in_steps(&found, slid.finer)? };
         }
-        let slid = self.slide(&found)?;
-        if *options != rough {
-            found = run(loaded.as_ref().unwrap_or(system), &Options { converged, ..*options })?;
+        if *options != with_forces {
+            let last = if change_before.is_nan() { system } else { &kicked };
+            found = run(last, &Options { converged, ..*options })?;
         }
         Ok(Integration { friction: Some(Settled { error, slid }), converged, error_estimate, ..found })
+    }
+
+    /// The impact of the `kicked` system under the load of the round before, in which friction did `slid` and which came to `found`; with the
+    /// change of velocities, over the speed, and force peaks, relative, from that.
+    fn kicked(
+        &self,
+        kicked: &mut System,
+        level: i32,
+        (found, slid): (&Integration, &Slid),
+        options: &Options,
+        run: impl Fn(&System, &Options) -> Result<Integration>,
+    ) -> Result<(Integration, f64)> {
+        if let Some(load) = &mut kicked.friction_load {
+            load.course.clone_from(&slid.course);
+            load.level = level;
+        }
+        let next = run(kicked, options)?;
+        let peaks = [found, &next].map(|result| result.contacts.map(|contact| contact.force_peak));
+        let [velocity, force] = differences(kicked, [found.velocity, next.velocity], peaks);
+        Ok((next, velocity.max(force)))
     }
 }
 
@@ -70,7 +100,8 @@ fn couples(mode: &SurfaceMode) -> bool {
     [mode.along, mode.approach].iter().all(|moved| *moved != [0.0; 2])
 }
 
-/// Displacement along x of the surfaces at both contacts per unit of each coordinate of `system`, of which the struck body moves in `modes`.
+/// Displacement along x of the surfaces at both contacts per unit of each coordinate of `system`, of which the struck body moves in `modes`. Of
+/// rigid motions the system has those that the contacts see: what a force along x does across the surfaces is the same as by all of them.
 fn participations(system: &System, modes: &[SurfaceMode]) -> Vec<[f64; 2]> {
     let mut along = vec![[0.0; 2]; system.oscillators.len()];
     system.elastic().zip(&system.along).for_each(|(k, of_mode)| along[k] = *of_mode);

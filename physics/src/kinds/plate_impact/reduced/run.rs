@@ -15,7 +15,7 @@ use crate::kinds::plate_impact::trials::TruncationError;
 use crate::kinds::plate_impact::truncation;
 use crate::kinds::plate_impact::validity::film_warning;
 use crate::kinds::plate_impact::{Kind, PlateImpact};
-use crate::kinds::rubbing::{Rubbed, omitted_stiffening};
+use crate::kinds::rubbing::{Rubbed, is_settled, omitted_stiffening};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::numerics::stopwatch::Stopwatch;
 use crate::result::{
@@ -187,7 +187,8 @@ impl Reduced {
             energy_residual: result.energy_residual,
             momentum_residual: result.momentum_residual,
             steps: result.steps,
-            converged: result.error_estimate.is_none_or(|error| error <= enough),
+            converged: result.error_estimate.is_none_or(|error| error <= enough)
+                && is_settled(&result, enough),
         })
     }
 
