@@ -21,7 +21,7 @@ mod shared;
 mod sphere;
 mod unit;
 
-pub use patch::half_space_flexibility;
+pub use patch::{half_space_flexibility, half_space_flexibility_along};
 pub use plate::{ContinuumPlate, PlateMode, WEIGHTED, eigenfrequencies, face_shapes, plate};
 pub use shared::{UnitBodies, Varied};
 pub use sphere::sphere_residual;

@@ -15,6 +15,13 @@ pub fn half_space_flexibility(material: &Material, patch_radius: f64) -> f64 {
     0.6 / (material.plane_strain_modulus() * patch_radius)
 }
 
+/// The same along the surface, by a unit force along it that is spread as the Hertz pressure.
+///
+/// The surface moves by 3/(64 G a^3) (4 (2 - nu) a^2 - (4 - 3 nu) x^2 - (4 - nu) y^2) (Johnson, Contact Mechanics, 1985, eq. 3.91a).
+pub fn half_space_flexibility_along(material: &Material, patch_radius: f64) -> f64 {
+    0.15 * (2.0 - material.poisson_ratio) / (material.shear_modulus() * patch_radius)
+}
+
 /// Consistent nodal axial forces (node, N) of a unit force, +z, spread over a patch on the mesh's surface.
 pub(super) fn nodal_forces(mesh: &Mesh, patch_radius: f64) -> Vec<(usize, f64)> {
     let basis = Basis::new(mesh.order);

@@ -4,21 +4,50 @@
 //! The mesh adds an error of its own, always too stiff, that falls as b^(-3.65) (measured on meshes of plates). A fit to three circles
 //! separates the two.
 
-use super::struck::StruckSolid;
+use super::struck::{MIDDLE, StruckSolid};
 use crate::body::ModalBody;
-use crate::body::continuum::half_space_flexibility;
+use crate::body::continuum::{half_space_flexibility, half_space_flexibility_along};
 use crate::contact::PatchFlexibility;
 use crate::scene::Material;
 use nalgebra::{Matrix3, Vector3};
 
 /// Power of the circle's radius with which the mesh's error falls.
 const MESH_POWER: f64 = -3.65;
+/// Length of what is left of a vector, over its own, below which it depends on others.
+const DEPENDENT: f64 = 1e-8;
 
 /// A value at the circle of radius 0, and its slope by the square of the radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct SquareLaw {
     value: f64,
     slope: f64,
+}
+
+/// The part of `vector` that is perpendicular to the `others` (Gram and Schmidt).
+fn perpendicular(vector: &[f64], others: [&[f64]; 3]) -> Vec<f64> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let without = |vector: &[f64], basis: &[Vec<f64>]| {
+        let mut rest = vector.to_vec();
+        // twice is enough (Parlett, 6.9)
+        for unit in basis.iter().chain(basis) {
+            let share = dot(&rest, unit);
+            rest.iter_mut().zip(unit).for_each(|(rest, unit)| *rest -= share * unit);
+        }
+        rest
+    };
+    for other in others {
+        let rest = without(other, &basis);
+        let length = dot(&rest, &rest).sqrt();
+        // one that depends on those before adds nothing
+        if length > DEPENDENT * dot(other, other).sqrt() {
+            basis.push(rest.iter().map(|value| value / length).collect());
+        }
+    }
+    without(vector, &basis)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl SquareLaw {
@@ -54,6 +83,32 @@ impl SquareLaw {
 }
 
 impl StruckSolid {
+    /// [`Self::along`] of a body [`Self::of_material`] with these `faces` at the contacts, without what half-spaces give way near the contacts:
+    /// that is part of the contacts' own stiffness. The highest modes have it; what forces elsewhere or across the surface do statically
+    /// along it stays.
+    pub fn along_beyond_half_spaces(&self, faces: [&Material; 2]) -> Vec<[f64; 2]> {
+        let mut found = self.along.clone();
+        let count = found.len();
+        // static displacements: their products are flexibilities
+        let of_modes = |value: &dyn Fn(usize) -> f64| (0..count).map(|k| value(k) / self.omega[k]).collect();
+        let along: [Vec<f64>; 2] = [0, 1].map(|i| of_modes(&|k| self.along[k][i]));
+        let normal: [Vec<f64>; 2] = [0, 1].map(|i| of_modes(&|k| self.participation[k][i][MIDDLE]));
+        for i in (0..2).filter(|i| self.circles[*i][0] > 0.0) {
+            let local = half_space_flexibility_along(faces[i], self.circles[i][MIDDLE]);
+            let others = [&normal[0], &normal[1], &along[1 - i]];
+            let own_part =
+                |lowest: usize| perpendicular(&along[i][lowest..], others.map(|other| &other[lowest..]));
+            let size = |part: &[f64]| dot(part, part);
+            let lowest = (0..count).rev().find(|lowest| size(&own_part(*lowest)) >= local).unwrap_or(0);
+            let part = own_part(lowest);
+            let taken = 1.0 - (1.0 - local / size(&part)).max(0.0).sqrt();
+            for (k, part) in (lowest..).zip(part) {
+                found[k][i] -= self.omega[k] * taken * part;
+            }
+        }
+        found
+    }
+
     /// The body whose first material is `material`, and that of its `faces` at the contacts, as contacts of the radii `patch` in m see it; the
     /// second belongs to an inner body, along whose contact z points into the body. Each mode has this `damping_ratio`.
     ///

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// Circles on which each contact is solved, in element sizes: smaller ones feel the mesh, larger ones the body's own shape.
 pub const CIRCLES: [f64; 3] = [1.41, 2.0, 2.83];
 /// The one whose static solutions begin the Ritz vectors.
-const MIDDLE: usize = 1;
+pub(super) const MIDDLE: usize = 1;
 /// Least share of the pressure that lies on the surface, and largest one that lies on held nodes.
 const COVERED: f64 = 0.99;
 const HELD: f64 = 0.01;

@@ -92,7 +92,7 @@ impl Between {
             motions.map(move |motion| SurfaceMode::rigid(motion[0], motion[along])).collect::<Vec<_>>()
         };
         let (rigid, rigid_aside) = (rigid(1), rigid(2));
-        let system = System { along: solid.along, ..join(own) };
+        let system = System { along: solid.along_beyond_half_spaces(faces), ..join(own) };
         let aside = surface_modes(rigid_aside, &solid.aside, &system);
         let normals: Vec<Vector3<f64>> = elastic.contacts.iter().map(|c| Vector3::from(c.normal)).collect();
         let mut warnings = elastic.warnings.clone();

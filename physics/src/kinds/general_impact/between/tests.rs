@@ -146,6 +146,39 @@ fn a_rubbing_rod_bends_as_a_cantilever() {
     assert!(off(false) < -0.02, "{}", off(false));
 }
 
+/// What half-spaces give way along the surface is taken out of the modes once, and nothing of what forces do elsewhere or across the surface.
+#[test]
+fn the_contacts_own_tangential_flexibility_counts_once() {
+    let mesh = boxes([20e-3, 16e-3, 6e-3], [10, 8, 3], 2, |p| p);
+    let fixed: Vec<bool> = mesh.points.iter().map(|p| p.x == 0.0).collect();
+    let at = |z: f64| SurfacePoint {
+        point: Vector3::new(12e-3, 8e-3, z),
+        normal: Vector3::new(0.0, 0.0, if z > 0.0 { 1.0 } else { -1.0 }),
+    };
+    let points = [6e-3, 0.0].map(|z| StruckPoint { at: at(z), circles: [2e-3, 2.8e-3, 4e-3], rubs: true });
+    let solid = StruckSolid::new(&mesh, &CellMaterials::one(steel()), &fixed, &points).expect("a block");
+    let solid = solid.of_material(&steel());
+    let beyond = solid.along_beyond_half_spaces([&steel(), &steel()]);
+    let flexibility = |along: &[[f64; 2]], i: usize, other: &dyn Fn(usize) -> f64| -> f64 {
+        (0..along.len()).map(|k| along[k][i] * other(k) / solid.omega[k].powi(2)).sum()
+    };
+    let [modulus, nu, _] = STEEL;
+    let local = 0.15 * (2.0 - nu) / (0.5 * modulus / (1.0 + nu) * 2.8e-3);
+    for i in 0..2 {
+        let own = |along: &[[f64; 2]]| flexibility(along, i, &|k| along[k][i]);
+        assert_relative_eq!(own(&solid.along) - own(&beyond), local, max_relative = 1e-6);
+        assert!(own(&beyond) > 0.0);
+        let others: [&dyn Fn(usize) -> f64; 3] =
+            [&|k| solid.participation[k][0][1], &|k| solid.participation[k][1][1], &|k| {
+                solid.along[k][1 - i]
+            }];
+        for other in others {
+            let [before, after] = [&solid.along, &beyond].map(|along| flexibility(along, i, other));
+            assert_relative_eq!(before, after, epsilon = 1e-6 * local);
+        }
+    }
+}
+
 /// A sphere against the end of a long rod, until the echo: m s'' = -F, d' = s' - F/(rho c A), F = k d^(3/2) with the bar's wave speed c.
 #[test]
 fn a_rod_takes_energy_away_as_a_wave() {
