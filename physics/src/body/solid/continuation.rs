@@ -8,6 +8,7 @@ use super::struck::{MIDDLE, StruckSolid};
 use crate::body::ModalBody;
 use crate::body::continuum::{half_space_flexibility, half_space_flexibility_along};
 use crate::contact::PatchFlexibility;
+use crate::numerics::vectors::{axpy, dot};
 use crate::scene::Material;
 use nalgebra::{Matrix3, Vector3};
 
@@ -30,8 +31,7 @@ fn perpendicular(vector: &[f64], others: [&[f64]; 3]) -> Vec<f64> {
         let mut rest = vector.to_vec();
         // twice is enough (Parlett, 6.9)
         for unit in basis.iter().chain(basis) {
-            let share = dot(&rest, unit);
-            rest.iter_mut().zip(unit).for_each(|(rest, unit)| *rest -= share * unit);
+            axpy(-dot(&rest, unit), unit, &mut rest);
         }
         rest
     };
@@ -44,10 +44,6 @@ fn perpendicular(vector: &[f64], others: [&[f64]; 3]) -> Vec<f64> {
         }
     }
     without(vector, &basis)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl SquareLaw {
