@@ -20,9 +20,12 @@ use super::Press;
 use super::radial_slip::{dundurs_beta, parted};
 use crate::material::Material;
 use std::f64::consts::FRAC_1_SQRT_2;
+use wide::f64x4;
 
 /// Springs on one side of the middle, in all directions together.
 const SPRINGS: usize = 64;
+/// Springs side by side.
+const LANES: usize = 4;
 /// Radial directions of the springs, along the motion and across it, of like and of unlike materials.
 static ONE_WAY: [[f64; 2]; 1] = [[1.0, 0.0]];
 static BOTH_WAYS: [[f64; 2]; 2] = [[FRAC_1_SQRT_2, FRAC_1_SQRT_2], [-FRAC_1_SQRT_2, FRAC_1_SQRT_2]];
@@ -38,8 +41,10 @@ pub struct TangentialContact {
     /// Distance of the springs, m.
     spacing: f64,
     directions: &'static [[f64; 2]],
-    /// Deflections of the springs along the motion and across it, m. Shape (directions, springs).
-    deflections: Vec<[f64; 2]>,
+    /// Distance of the first springs from the middle, m.
+    first: f64x4,
+    /// Deflections of the springs along the motion and across it, m. Shape (directions, springs / LANES).
+    deflections: Vec<[f64x4; 2]>,
     /// What springs of bodies that relax have been through; `None`: they are elastic.
     creeping: Option<CreepingSprings>,
     press: Press,
@@ -49,14 +54,14 @@ pub struct TangentialContact {
     work: f64,
 }
 
-/// What a step does to the springs at a place.
+/// What a step does to the springs at some places.
 struct SpringStep {
     /// Share of the motion that they take part in.
-    share: f64,
+    share: f64x4,
     /// Their radial motion, m.
-    radial: f64,
+    radial: f64x4,
     /// Deflection from which on they slide, m.
-    most: f64,
+    most: f64x4,
 }
 
 impl TangentialContact {
@@ -68,14 +73,15 @@ impl TangentialContact {
         let whole = compliances[0] + compliances[1];
         let beta = dundurs_beta(tip, face);
         let directions: &[[f64; 2]] = if beta == 0.0 { &ONE_WAY } else { &BOTH_WAYS };
-        let springs = SPRINGS / directions.len();
+        let spacing = widest / (SPRINGS / directions.len()) as f64;
         Self {
             tangential: 1.0 / whole,
             beta,
             friction,
-            spacing: widest / springs as f64,
+            spacing,
             directions,
-            deflections: vec![[0.0; 2]; SPRINGS],
+            first: f64x4::from([0.5, 1.5, 2.5, 3.5]) * spacing,
+            deflections: vec![[f64x4::ZERO; 2]; SPRINGS / LANES],
             creeping: CreepingSprings::new([tip, face], compliances.map(|part| part / whole), SPRINGS),
             press: Press::default(),
             force: 0.0,
@@ -90,7 +96,7 @@ impl TangentialContact {
 
     /// Strain energy by the motion along the surface, J.
     pub fn stored(&self) -> f64 {
-        let elastic = || 0.5 * self.deflections.iter().map(|[along, _]| along * along).sum::<f64>();
+        let elastic = || 0.5 * self.deflections.iter().map(|[along, _]| (*along * *along).reduce_add()).sum::<f64>();
         self.spring_stiffness() * self.creeping.as_ref().map_or_else(elastic, CreepingSprings::stored)
     }
 
@@ -103,20 +109,20 @@ impl TangentialContact {
     /// Moves the surfaces by another `step` m in `h` s until the contact is pressed by `press`.
     pub fn advance(&mut self, press: Press, step: f64, h: f64) {
         self.creeping.iter_mut().for_each(|creeping| creeping.prepare(h));
-        let mut held = 0.0;
+        let mut held = f64x4::ZERO;
+        let blocks = self.deflections.len() / self.directions.len();
         // those beyond are at rest, unless they creep
-        let reached = (press.radius.max(self.press.radius) / self.spacing).ceil() as usize;
-        let reached = if self.creeping.is_some() { self.places() } else { self.places().min(reached) };
-        for place in 0..reached {
-            let at = self.step(place, &press);
-            for direction in 0..self.directions.len() {
-                let spring = direction * self.places() + place;
-                held += self.moved(spring, direction, &at, step);
+        let reached = press.radius.max(self.press.radius) / (LANES as f64 * self.spacing);
+        let reached = if self.creeping.is_some() { blocks } else { blocks.min(reached.ceil() as usize) };
+        for block in 0..reached {
+            let at = self.step(self.first + f64x4::splat((block * LANES) as f64 * self.spacing), &press);
+            for (direction, radial) in self.directions.iter().enumerate() {
+                held += self.moved(direction * blocks + block, radial, &at, step);
             }
         }
         self.creeping.iter_mut().for_each(CreepingSprings::book);
         self.press = press;
-        let force = self.spring_stiffness() * held;
+        let force = self.spring_stiffness() * held.reduce_add();
         let before = std::mem::replace(&mut self.force, force);
         self.work += 0.5 * (before + self.force) * step;
     }
@@ -126,54 +132,46 @@ impl TangentialContact {
         2.0 * self.spacing * self.tangential / self.directions.len() as f64
     }
 
-    fn places(&self) -> usize {
-        self.deflections.len() / self.directions.len()
-    }
-
     /// Until the contact is pressed by `press`.
-    #[inline]
-    fn step(&self, place: usize, press: &Press) -> SpringStep {
-        let place = (place as f64 + 0.5) * self.spacing;
-        if place >= press.radius {
-            return SpringStep { share: 0.0, radial: 0.0, most: 0.0 };
-        }
-        let touched = place < self.press.radius;
+    #[inline(always)]
+    fn step(&self, place: f64x4, press: &Press) -> SpringStep {
+        let before = &self.press;
+        let inside = place.simd_lt(f64x4::splat(press.radius));
+        let touched = place.simd_lt(f64x4::splat(before.radius));
         // what the growing contact reaches in between takes part from then on
-        let share = if touched { 1.0 } else { (press.radius - place) / (press.radius - self.press.radius) };
+        let reached = (f64x4::splat(press.radius) - place) / f64x4::splat(press.radius - before.radius);
         let parted = |press: &Press| match self.beta {
-            0.0 => 0.0,
-            beta => parted(beta, place, press.radius) * press.curvature,
+            0.0 => f64x4::ZERO,
+            beta => f64x4::from(place.to_array().map(|place| parted(beta, place, press.radius)))
+                * press.curvature,
         };
-        let before = if touched { parted(&self.press) } else { 0.0 };
+        let within = |value: f64x4| inside.select(value, f64x4::ZERO);
         SpringStep {
-            share,
-            radial: parted(press) - before,
-            most: self.friction * press.load(place) / self.tangential,
+            share: within(touched.select(f64x4::ONE, reached)),
+            radial: within(parted(press) - touched.select(parted(before), f64x4::ZERO)),
+            most: within(press.load(place) * (self.friction / self.tangential)),
         }
     }
 
-    /// Moves a spring; gives its force along the motion afterwards over its stiffness, m.
-    #[inline]
-    fn moved(&mut self, spring: usize, direction: usize, at: &SpringStep, step: f64) -> f64 {
-        let [[along, across], radial] = [self.deflections[spring], self.directions[direction]];
+    /// Moves springs side by side; gives their forces along the motion afterwards over their stiffness, m.
+    #[inline(always)]
+    fn moved(&mut self, springs: usize, radial: &[f64; 2], at: &SpringStep, step: f64) -> f64x4 {
+        let [along, across] = self.deflections[springs];
         let wanted = [along + at.share * step + at.radial * radial[0], across + at.radial * radial[1]];
-        if let Some(creeping) = &mut self.creeping {
-            let (deflection, force) = creeping.moved(spring, wanted, at.most);
-            self.deflections[spring] = deflection;
-            return force[0];
-        }
-        let now = at_most(wanted, at.most);
-        self.deflections[spring] = now;
-        now[0]
+        let Some(creeping) = &mut self.creeping else {
+            self.deflections[springs] = at_most(wanted, at.most);
+            return self.deflections[springs][0];
+        };
+        creeping.moved(springs, wanted, at.most, &mut self.deflections[springs])
     }
 }
 
-/// The same direction, of `most` length.
-#[inline]
-fn at_most(vector: [f64; 2], most: f64) -> [f64; 2] {
-    let length = vector[0].hypot(vector[1]);
-    let share = if length <= most { 1.0 } else { most / length };
-    vector.map(|part| part * share)
+/// The same in every lane's direction, of `most` length.
+#[inline(always)]
+fn at_most([x, y]: [f64x4; 2], most: f64x4) -> [f64x4; 2] {
+    let length = (x * x + y * y).sqrt();
+    let share = length.simd_le(most).select(f64x4::ONE, most / length);
+    [x * share, y * share]
 }
 
 #[cfg(test)]

@@ -30,11 +30,11 @@ const INVERSE_FACTORIAL: [f64; 27] = {
 /// Some oscillators of a [`System`] and what the contacts see of them.
 #[derive(Debug, Clone)]
 pub struct Block {
-    omega: f64x4,
+    pub omega: f64x4,
     /// omega^2.
     pub stiffness: f64x4,
     /// 1/omega^2; 0 for a rigid motion, whose moments never divide by it.
-    flexibility: f64x4,
+    pub flexibility: f64x4,
     /// 2 alpha.
     pub damping: f64x4,
     /// Approach of each contact per unit of each coordinate.
@@ -76,33 +76,16 @@ pub struct OscillatorBatch {
 impl OscillatorBatch {
     /// The oscillators of `system`.
     pub fn new(system: &System) -> Self {
-        let rest = Oscillator { omega: 0.0, alpha: 0.0 };
-        let block = |(chunk, start): (&[Oscillator], usize)| {
-            let oscillators: [Oscillator; LANES] =
-                std::array::from_fn(|i| chunk.get(i).copied().unwrap_or(rest));
-            let each = |value: fn(&Oscillator) -> f64| f64x4::from(oscillators.map(|o| value(&o)));
-            let approach = [0, 1].map(|i| filled_up(&system.approach[i][start..][..chunk.len()]));
-            Block {
-                omega: each(|o| o.omega),
-                stiffness: each(|o| o.omega * o.omega),
-                flexibility: each(|o| if o.omega > 0.0 { 1.0 / (o.omega * o.omega) } else { 0.0 }),
-                damping: each(|o| 2.0 * o.alpha),
-                approach,
-                products: [approach[0] * approach[0], approach[0] * approach[1], approach[1] * approach[1]],
-                damped: oscillators.iter().any(|o| o.alpha > 0.0),
-                oscillators,
-            }
-        };
+        let blocks = system.oscillators.chunks(LANES).zip((0..).step_by(LANES)).map(|(chunk, start)| {
+            Block::new(chunk, [0, 1].map(|i| filled_up(&system.approach[i][start..][..chunk.len()])))
+        });
         let fed = system.feeds.iter().map(|&(place, feed)| Fed {
             place,
             oscillator: system.oscillators[place],
             approach: system.approach[0][place],
             feed,
         });
-        Self {
-            blocks: system.oscillators.chunks(LANES).zip((0..).step_by(LANES)).map(block).collect(),
-            fed: fed.collect(),
-        }
+        Self { blocks: blocks.collect(), fed: fed.collect() }
     }
 
     /// Approaches in m, without the gaps, with their first and second derivatives by time, `t` s after the state
@@ -195,6 +178,23 @@ impl OscillatorBatch {
 }
 
 impl Block {
+    /// At most [`LANES`] oscillators, with the approaches of both contacts.
+    pub fn new(chunk: &[Oscillator], approach: [f64x4; 2]) -> Self {
+        let rest = Oscillator { omega: 0.0, alpha: 0.0 };
+        let oscillators: [Oscillator; LANES] = std::array::from_fn(|i| chunk.get(i).copied().unwrap_or(rest));
+        let each = |value: fn(&Oscillator) -> f64| f64x4::from(oscillators.map(|o| value(&o)));
+        Self {
+            omega: each(|o| o.omega),
+            stiffness: each(|o| o.omega * o.omega),
+            flexibility: each(|o| if o.omega > 0.0 { 1.0 / (o.omega * o.omega) } else { 0.0 }),
+            damping: each(|o| 2.0 * o.alpha),
+            approach,
+            products: [approach[0] * approach[0], approach[0] * approach[1], approach[1] * approach[1]],
+            damped: oscillators.iter().any(|o| o.alpha > 0.0),
+            oscillators,
+        }
+    }
+
     /// Coordinates and rates after the time of these `moments` from the `state` under forces with these derivatives by time in it.
     #[inline(always)]
     fn after(&self, moments: &[f64x4; MOMENTS], [q, v]: [f64x4; 2], forces: &[Stages; 2]) -> [f64x4; 2] {
@@ -277,7 +277,7 @@ fn stumpff<const N: usize>(p: usize, square: f64x4) -> f64x4 {
 }
 
 /// At most [`LANES`] `values`, filled up with zeros.
-fn filled_up(values: &[f64]) -> f64x4 {
+pub fn filled_up(values: &[f64]) -> f64x4 {
     f64x4::from(std::array::from_fn(|i| values.get(i).copied().unwrap_or(0.0)))
 }
 

@@ -80,9 +80,7 @@ impl Sliding<'_> {
     pub fn slide(mut self, time: &[f64], presses: &[Vec<Press>; 2], finer: f64) -> Slid {
         let mut slid = Slid { course: vec![(0.0, [0.0; 2])], finer, ..Slid::default() };
         let mut velocity = self.velocity;
-        // their motion by the forces across them, which are known, and by those along them
-        let mut pressed = MovingSurfaces::new(self.modes);
-        let mut rubbed = pressed.clone();
+        let mut surfaces = MovingSurfaces::new(self.modes);
         let mut earlier = self.forces();
         // of the surfaces along x so far, m
         let mut moved = [0.0; 2];
@@ -95,18 +93,17 @@ impl Sliding<'_> {
             let enough = self.steps([0, 1].map(|i| from[i].radius.max(to[i].radius)), length);
             let count = (finer * enough).ceil();
             let h = length / count;
-            pressed.prepare(h);
-            rubbed.prepare(h);
+            surfaces.prepare(h);
             let mut press = from;
             for step in 1..=count as usize {
                 let (before, across) = (self.forces(), press.map(|press| press.force));
                 press = [0, 1].map(|i| from[i].between(&to[i], step as f64 / count));
                 self.kick(&mut velocity, before, 0.5 * h);
-                rubbed.kick(before, 0.5 * h);
-                let by_pressing = pressed.press(across, press.map(|press| press.force));
-                let by_friction = rubbed.drift();
+                surfaces.kick(before, 0.5 * h);
+                let by_pressing = surfaces.press(across, press.map(|press| press.force));
+                let by_friction = surfaces.drift();
                 // a step late, which takes a little energy
-                let yields = rubbed.yields([0, 1].map(|i| before[i] - earlier[i]));
+                let yields = surfaces.yields([0, 1].map(|i| before[i] - earlier[i]));
                 earlier = before;
                 for (i, contact) in self.contacts.iter_mut().enumerate() {
                     let surface = by_pressing[i] + by_friction[i] + yields[i];
@@ -122,8 +119,8 @@ impl Sliding<'_> {
                 }
                 let after = self.forces();
                 self.kick(&mut velocity, after, 0.5 * h);
-                rubbed.kick(after, 0.5 * h);
-                slid.across = slid.across.max(rubbed.speed_across());
+                surfaces.kick(after, 0.5 * h);
+                slid.across = slid.across.max(surfaces.speed_across());
                 (0..2).for_each(|i| slid.impulse[i] += 0.5 * h * (before[i] + after[i]));
             }
             slid.course.push((time[end], slid.impulse));

@@ -1,11 +1,11 @@
 //! The struck body's surfaces, which its modes move along themselves: by the contact forces across them, as where a plate's normal turns, and
 //! by those along them.
 
+use super::batch::{Block, LANES, filled_up};
 use crate::numerics::duhamel::Oscillator;
+use crate::numerics::stages::{STAGES, powers};
 use wide::f64x4;
 
-/// Modes in a block.
-const LANES: usize = 4;
 /// Relative difference of durations below which they are the same but for rounding.
 const SAME: f64 = 1e-9;
 
@@ -20,10 +20,9 @@ pub struct SurfaceMode {
     pub along: [f64; 2],
 }
 
-/// What is struck, from rest on.
+/// What is struck, from rest on: its motion by the forces across the surfaces and that by those along them.
 #[derive(Debug, Clone)]
-pub struct MovingSurfaces<'a> {
-    modes: &'a [SurfaceMode],
+pub struct MovingSurfaces {
     blocks: Vec<ModeBlock>,
     /// Duration of the steps that the blocks are prepared for, s.
     duration: f64,
@@ -32,10 +31,10 @@ pub struct MovingSurfaces<'a> {
 }
 
 /// Modes side by side.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct ModeBlock {
+    oscillators: Block,
     /// See [`SurfaceMode`], by contact.
-    approach: [f64x4; 2],
     along: [f64x4; 2],
     /// What a step of free motion makes of coordinate and rate: coordinate by both, rate by both.
     free: [[f64x4; 2]; 2],
@@ -43,8 +42,9 @@ struct ModeBlock {
     forced: [[f64x4; 2]; 2],
     /// Share of the participation along the surface that kicks once a step feel and move, see [`MovingSurfaces::kick`].
     felt: f64x4,
-    /// Coordinates and rates.
-    state: [f64x4; 2],
+    /// Coordinates and rates by the forces across the surfaces, and by those along them.
+    pressed: [f64x4; 2],
+    kicked: [f64x4; 2],
 }
 
 impl SurfaceMode {
@@ -54,18 +54,46 @@ impl SurfaceMode {
     }
 }
 
-impl<'a> MovingSurfaces<'a> {
-    /// At rest.
-    pub fn new(modes: &'a [SurfaceMode]) -> Self {
-        let blocks = modes.chunks(LANES).map(|chunk| ModeBlock {
-            approach: [0, 1].map(|i| each(chunk, |mode| mode.approach[i])),
-            along: [0, 1].map(|i| each(chunk, |mode| mode.along[i])),
+impl ModeBlock {
+    fn new(chunk: &[SurfaceMode]) -> Self {
+        let oscillators: Vec<Oscillator> = chunk.iter().map(|mode| mode.oscillator).collect();
+        let each = |value: &dyn Fn(&SurfaceMode) -> f64| {
+            let values: Vec<f64> = chunk.iter().map(value).collect();
+            filled_up(&values)
+        };
+        Self {
+            oscillators: Block::new(&oscillators, [0, 1].map(|i| each(&|mode| mode.approach[i]))),
+            along: [0, 1].map(|i| each(&|mode| mode.along[i])),
             free: [[f64x4::ZERO; 2]; 2],
             forced: [[f64x4::ZERO; 2]; 2],
             felt: f64x4::ONE,
-            state: [f64x4::ZERO; 2],
-        });
-        Self { modes, blocks: blocks.collect(), duration: f64::NAN, lacking: [[0.0; 2]; 2] }
+            pressed: [f64x4::ZERO; 2],
+            kicked: [f64x4::ZERO; 2],
+        }
+    }
+
+    /// Prepares steps of `h` s, of which `powers` are the powers; gives the static flexibility that each mode lacks for kicks once a step.
+    fn prepare(&mut self, h: f64, powers: &[f64; STAGES]) -> f64x4 {
+        let Block { omega, stiffness, damping, flexibility, .. } = self.oscillators;
+        // of Duhamel's integral: rate and coordinate by an even force, and the coordinate by one that grows
+        let [slope, rate, even, growing, ..] = self.oscillators.moments(h, powers);
+        self.free = [[slope + damping * rate, rate], [-(stiffness * rate), slope]];
+        let (growing, rate_growing) = (growing / h, even / h);
+        self.forced = [[even - growing, growing], [rate - rate_growing, rate_growing]];
+        let turn = omega * (0.5 * h);
+        let (sine, cosine) = turn.sin_cos();
+        let still = turn.simd_lt(f64x4::splat(f64::MIN_POSITIVE));
+        self.felt = still.select(f64x4::ONE, sine / turn);
+        // sin(2 x)/(2 x) = sin x/x cos x
+        flexibility * (f64x4::ONE - self.felt * cosine)
+    }
+}
+
+impl MovingSurfaces {
+    /// At rest.
+    pub fn new(modes: &[SurfaceMode]) -> Self {
+        let blocks = modes.chunks(LANES).map(ModeBlock::new).collect();
+        Self { blocks, duration: f64::NAN, lacking: [[0.0; 2]; 2] }
     }
 
     /// Prepares steps of `h` s.
@@ -74,25 +102,18 @@ impl<'a> MovingSurfaces<'a> {
         if (self.duration - h).abs() <= SAME * h {
             return;
         }
-        for (block, chunk) in self.blocks.iter_mut().zip(self.modes.chunks(LANES)) {
-            let of = |i: usize, unit: [f64; 2]| each(chunk, |mode| mode.oscillator.after(h, unit)[i]);
-            block.free = [0, 1].map(|i| [of(i, [1.0, 0.0]), of(i, [0.0, 1.0])]);
-            // of Duhamel's integral: rate and coordinate by an even force, and the coordinate by one that grows
-            let moment = |p: usize| each(chunk, |mode| mode.oscillator.moments(h)[p]);
-            let [rate, even, growing] = [moment(1), moment(2), moment(3) / f64x4::splat(h)];
-            let rate_growing = even / f64x4::splat(h);
-            block.forced = [[even - growing, growing], [rate - rate_growing, rate_growing]];
-            block.felt = each(chunk, |mode| sinc(0.5 * mode.oscillator.omega * h));
-        }
-        self.duration = h;
-        self.lacking = [[0.0; 2]; 2];
-        for mode in self.modes.iter().filter(|mode| mode.oscillator.omega > 0.0) {
-            let omega = mode.oscillator.omega;
-            let flexibility = (1.0 - sinc(omega * h)) / (omega * omega);
-            for (row, along) in self.lacking.iter_mut().zip(mode.along) {
-                (0..2).for_each(|j| row[j] += along * mode.along[j] * flexibility);
+        let powers = powers(h);
+        let mut lacking = [f64x4::ZERO; 3];
+        for block in &mut self.blocks {
+            let flexibility = block.prepare(h, &powers);
+            let [outer, inner] = block.along;
+            for (sum, product) in lacking.iter_mut().zip([outer * outer, outer * inner, inner * inner]) {
+                *sum += product * flexibility;
             }
         }
+        let [outer, both, inner] = lacking.map(f64x4::reduce_add);
+        self.lacking = [[outer, both], [both, inner]];
+        self.duration = h;
     }
 
     /// Moves on by a step under forces across the surfaces that change evenly `from` those at its start `to` those at its end, in N; gives
@@ -101,13 +122,14 @@ impl<'a> MovingSurfaces<'a> {
         let forces = [from, to].map(|forces| forces.map(f64x4::splat));
         let mut moved = [f64x4::ZERO; 2];
         for block in &mut self.blocks {
-            let [q, v] = block.state;
-            let [start, end] = forces.map(|[a, b]| block.approach[0] * a + block.approach[1] * b);
-            block.state = [0, 1].map(|i| {
+            let [q, v] = block.pressed;
+            let [outer, inner] = block.oscillators.approach;
+            let [start, end] = forces.map(|[a, b]| outer * a + inner * b);
+            block.pressed = [0, 1].map(|i| {
                 let ([by_q, by_v], [by_start, by_end]) = (block.free[i], block.forced[i]);
                 by_q * q + by_v * v - by_start * start - by_end * end
             });
-            (0..2).for_each(|i| moved[i] += block.along[i] * (block.state[0] - q));
+            (0..2).for_each(|i| moved[i] += block.along[i] * (block.pressed[0] - q));
         }
         moved.map(f64x4::reduce_add)
     }
@@ -120,17 +142,17 @@ impl<'a> MovingSurfaces<'a> {
     pub fn kick(&mut self, along: [f64; 2], h: f64) {
         let by = along.map(|force| f64x4::splat(h * force));
         for block in &mut self.blocks {
-            block.state[1] += block.felt * (block.along[0] * by[0] + block.along[1] * by[1]);
+            block.kicked[1] += block.felt * (block.along[0] * by[0] + block.along[1] * by[1]);
         }
     }
 
-    /// Free motion for a step; how far it moves both surfaces along x, m.
+    /// Motion for a step after the kicks; how far it moves both surfaces along x, m.
     pub fn drift(&mut self) -> [f64; 2] {
         let mut moved = [f64x4::ZERO; 2];
         for block in &mut self.blocks {
-            let [q, v] = block.state;
-            block.state = block.free.map(|[by_q, by_v]| by_q * q + by_v * v);
-            (0..2).for_each(|i| moved[i] += block.felt * block.along[i] * (block.state[0] - q));
+            let [q, v] = block.kicked;
+            block.kicked = block.free.map(|[by_q, by_v]| by_q * q + by_v * v);
+            (0..2).for_each(|i| moved[i] += block.felt * block.along[i] * (block.kicked[0] - q));
         }
         moved.map(f64x4::reduce_add)
     }
@@ -143,20 +165,11 @@ impl<'a> MovingSurfaces<'a> {
     /// Speed at which a contact moves across its surface in a step, the larger of both, m/s; quick modes as [`Self::kick`] has them.
     pub fn speed_across(&self) -> f64 {
         let of = |i: usize| {
-            let speed = |block: &ModeBlock| block.felt * block.approach[i] * block.state[1];
+            let speed = |block: &ModeBlock| block.felt * block.oscillators.approach[i] * block.kicked[1];
             self.blocks.iter().map(speed).fold(f64x4::ZERO, |sum, speed| sum + speed).reduce_add().abs()
         };
         of(0).max(of(1))
     }
-}
-
-/// The values of `chunk`, at most four modes, filled up with zeros.
-fn each(chunk: &[SurfaceMode], value: impl Fn(&SurfaceMode) -> f64) -> f64x4 {
-    f64x4::from(std::array::from_fn::<f64, LANES, _>(|k| chunk.get(k).map_or(0.0, &value)))
-}
-
-fn sinc(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { x.sin() / x }
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! The tangential springs of bodies that relax: each is two in series, one of each body.
 
-use super::at_most;
+use super::{LANES, at_most};
 use crate::material::{Creep, Deformation, Material};
+use wide::f64x4;
 
 /// What one body adds to every spring.
 #[derive(Debug, Clone)]
@@ -44,25 +45,33 @@ impl CreepingSprings {
         }
     }
 
-    /// Moves a spring to the deflection `wanted` in m, or as far as a force of `most` holds it; gives deflection and force.
-    pub(super) fn moved(&mut self, spring: usize, wanted: [f64; 2], most: f64) -> ([f64; 2], [f64; 2]) {
-        let states = &mut self.states[spring];
-        let free = |axis: usize| -> f64 {
-            self.halves
-                .iter()
-                .zip(&states[axis])
-                .map(|(half, state)| half.creep.deformation(state, 0.0))
-                .sum()
+    /// Moves springs side by side to the deflections `wanted` in m, or as far as a force of `most` holds them; gives the forces along the motion.
+    pub(super) fn moved(
+        &mut self,
+        springs: usize,
+        wanted: [f64x4; 2],
+        most: f64x4,
+        deflections: &mut [f64x4; 2],
+    ) -> f64x4 {
+        let states = &mut self.states[springs * LANES..][..LANES];
+        let free = |axis: usize| {
+            let of = |half: usize, lane: usize| {
+                self.halves[half].creep.deformation(&states[lane][axis][half], 0.0)
+            };
+            f64x4::from([0, 1, 2, 3].map(|lane| of(0, lane) + of(1, lane)))
         };
         let free = [free(0), free(1)];
         let growth: f64 = self.halves.iter().map(|half| half.share * half.creep.growth()).sum();
-        let force = at_most([0, 1].map(|axis| (wanted[axis] - free[axis]) / growth), most);
-        for (axis, force) in states.iter_mut().zip(force) {
-            for (half, state) in self.halves.iter().zip(axis) {
-                half.creep.advance(state, half.share * force);
+        let forces = at_most([0, 1].map(|axis| (wanted[axis] - free[axis]) / growth), most);
+        for axis in 0..2 {
+            for (state, force) in states.iter_mut().zip(forces[axis].to_array()) {
+                for (half, state) in self.halves.iter().zip(&mut state[axis]) {
+                    half.creep.advance(state, half.share * force);
+                }
             }
+            deflections[axis] = free[axis] + forces[axis] * growth;
         }
-        ([0, 1].map(|axis| free[axis] + growth * force[axis]), force)
+        forces[0]
     }
 
     /// Books what the springs have lost in a step.
