@@ -71,6 +71,8 @@ pub struct OscillatorBatch {
     pub blocks: Vec<Block>,
     /// Oscillators of a circuit, which the force of the first contact moves in one more way; none of any other body.
     pub fed: Vec<Fed>,
+    /// Displacement along x of the surfaces at both contacts per unit of each coordinate, where forces along them are known; else nothing.
+    pub along: Vec<[f64x4; 2]>,
 }
 
 impl OscillatorBatch {
@@ -85,7 +87,11 @@ impl OscillatorBatch {
             approach: system.approach[0][place],
             feed,
         });
-        Self { blocks: blocks.collect(), fed: fed.collect() }
+        let along = system.friction_load.iter().flat_map(|load| load.along.chunks(LANES));
+        let along = along.map(|chunk| {
+            [0, 1].map(|i| filled_up(&chunk.iter().map(|along| along[i]).collect::<Vec<_>>()))
+        });
+        Self { blocks: blocks.collect(), fed: fed.collect(), along: along.collect() }
     }
 
     /// Approaches in m, without the gaps, with their first and second derivatives by time, `t` s after the state
@@ -164,6 +170,33 @@ impl OscillatorBatch {
             };
             forces = forces.map(later);
         }
+    }
+
+    /// What forces along the surfaces add to [`Self::approach_after`], of which `forces` are the derivatives by time.
+    pub fn pushed_after(&self, forces: &[Stages; 2], t: f64) -> [[f64; 2]; 3] {
+        let powers = powers(t);
+        let now = forces.map(|force| dot(&force, &powers));
+        let mut sums = [[f64x4::ZERO; 2]; 3];
+        for (block, along) in self.blocks.iter().zip(&self.along) {
+            let moments = block.moments(t, &powers);
+            let [displacement, rate] = pushed(&moments, along, forces);
+            let now = along[0] * now[0] + along[1] * now[1];
+            let acceleration = now - block.stiffness * displacement - block.damping * rate;
+            for (sums, value) in sums.iter_mut().zip([displacement, rate, acceleration]) {
+                sums[0] += block.approach[0] * value;
+                sums[1] += block.approach[1] * value;
+            }
+        }
+        sums.map(|sums| sums.map(f64x4::reduce_add))
+    }
+
+    /// Displacements along x of the surfaces in m with the coordinates `q`.
+    pub fn moved_along(&self, q: &[f64x4]) -> [f64; 2] {
+        let mut sums = [f64x4::ZERO; 2];
+        for (along, &q) in self.along.iter().zip(q) {
+            (0..2).for_each(|i| sums[i] += along[i] * q);
+        }
+        sums.map(f64x4::reduce_add)
     }
 
     /// Rates of the approaches in m/s with the rates `v` of the oscillators.
@@ -264,6 +297,18 @@ impl Block {
         let moments = self.oscillators.map(|oscillator| oscillator.moments(t));
         std::array::from_fn(|p| f64x4::from(moments.map(|m| m[p])))
     }
+}
+
+/// Coordinates and rates after the time of these `moments` from rest under forces along the surfaces with these derivatives by time.
+#[inline(always)]
+pub fn pushed(moments: &[f64x4; MOMENTS], along: &[f64x4; 2], forces: &[Stages; 2]) -> [f64x4; 2] {
+    let mut motion = [f64x4::ZERO; 2];
+    for p in 0..STAGES {
+        let force = along[0] * forces[0][p] + along[1] * forces[1][p];
+        motion[0] += moments[p + 2] * force;
+        motion[1] += moments[p + 1] * force;
+    }
+    motion
 }
 
 /// The first `N` terms of Stumpff's function c_p at `square` = (omega t)^2.

@@ -8,6 +8,7 @@
 use super::batch::OscillatorBatch;
 use super::collocation::{Collocation, POINTS, Points};
 use super::contact_balance::work;
+use super::friction_load::StepLoad;
 use super::point_laws::{HertzPoints, PointLaw, ResidualPoints, Visit};
 use super::step_table::StepTable;
 use super::system::{System, dot};
@@ -38,6 +39,8 @@ pub struct Course {
     pub stored: f64,
     /// Kinetic and strain energy of the bodies at the end in J.
     pub motion: f64,
+    /// Work of known forces along the surfaces on the bodies in J.
+    pub load_work: f64,
 }
 
 impl Course {
@@ -84,6 +87,15 @@ struct Unknowns {
     force: [Stages; 2],
 }
 
+/// Values at start, nodes and end of a step.
+fn points(start: f64, stages: Stages, end: f64) -> Points {
+    std::array::from_fn(|p| match p {
+        0 => start,
+        _ if p == POINTS - 1 => end,
+        _ => stages[p - 1],
+    })
+}
+
 impl<'a> StepSolver<'a> {
     /// For the contacts and bodies of `system`.
     pub fn new(system: &'a System, collocation: &'a Collocation) -> Self {
@@ -97,16 +109,22 @@ impl<'a> StepSolver<'a> {
     }
 
     /// Solves a step of the length of `table` that follows on `before`, from the state `now` into `next`; `None` if
-    /// the sweeps do not settle within `force_error` or the contact has no equilibrium.
+    /// the sweeps do not settle within `force_error` or the contact has no equilibrium. A known `load` acts along the surfaces.
     pub fn solve(
         &mut self,
         table: &StepTable,
         before: &Course,
         now: (&[f64x4], &[f64x4]),
-        next: (&mut [f64x4], &mut [f64x4]),
+        (next_q, next_v): (&mut [f64x4], &mut [f64x4]),
+        load: Option<&StepLoad>,
         force_error: ForceError,
     ) -> Option<Course> {
-        let free = table.free_approach(&self.batch, self.system.gap, now.0, now.1);
+        let mut free = table.free_approach(&self.batch, self.system.gap, now.0, now.1);
+        let load = load.zip(table.load.as_ref());
+        if let Some((load, answers)) = load {
+            let added = answers.approach(&load.forces);
+            (0..2).for_each(|i| free[i] += added[i]);
+        }
         let unforced = free.map(f64x4::to_array);
         let guess = self.guess(before, table.h).unwrap_or(unforced);
         let laws = &self.system.laws;
@@ -120,7 +138,19 @@ impl<'a> StepSolver<'a> {
         };
         let (unknowns, contraction) = solved?;
         self.contraction = contraction;
-        let (end, motion) = table.advance(&self.batch, &unknowns.force, now, next);
+        let (mut end, mut motion) = table.advance(&self.batch, &unknowns.force, now, (next_q, next_v));
+        let mut load_work = 0.0;
+        if let Some((load, answers)) = load {
+            let (added, all) = table.advance_under(&self.batch, load, (next_q, next_v));
+            (end, motion) = ([end[0] + added[0], end[1] + added[1]], all);
+            let free = table.free_motion(&self.batch, |k| self.batch.along[k], now.0, now.1);
+            let moved = answers.along(&load.forces, &unknowns.force);
+            let [start, last] = [now.0, next_q].map(|q| self.batch.moved_along(q));
+            for i in 0..2 {
+                let nodes = (free[i] + moved[i]).to_array();
+                load_work += work(self.collocation, &load.forces[i], &points(start[i], nodes, last[i]));
+            }
+        }
         let end_approach = [end[0] - self.system.gap[0], end[1] - self.system.gap[1]];
         let last = unknowns.local.map(|p| dot(&self.collocation.ends[1], &p));
         let (end_local, end_force) = self
@@ -128,13 +158,7 @@ impl<'a> StepSolver<'a> {
             .contact(end_approach, last)
             .or_else(|| self.system.contact(end_approach, end_approach))?;
         let join = |start: [f64; 2], stages: &[Stages; 2], end: [f64; 2]| -> [Points; 2] {
-            std::array::from_fn(|i| {
-                std::array::from_fn(|p| match p {
-                    0 => start[i],
-                    _ if p == POINTS - 1 => end[i],
-                    _ => stages[i][p - 1],
-                })
-            })
+            std::array::from_fn(|i| points(start[i], stages[i], end[i]))
         };
         let [approach, local, force] = before.end();
         let approach = join(approach, &unknowns.approach.map(f64x4::to_array), end_approach);
@@ -144,6 +168,7 @@ impl<'a> StepSolver<'a> {
             work: [0, 1].map(|i| work(self.collocation, &unknowns.force[i], &approach[i])),
             stored: self.system.stored_energy(end_force, end_local),
             motion,
+            load_work,
             local_approach: join(local, &unknowns.local, end_local),
             force: join(force, &unknowns.force, end_force),
         })

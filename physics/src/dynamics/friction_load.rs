@@ -2,36 +2,78 @@
 //!
 //! The forces depend on the motion across the surfaces, and that on them. Each is solved in turn over the whole impact, with the course of the
 //! other from the run before, until nothing changes (waveform relaxation: Lelarasmee, Ruehli and Sangiovanni-Vincentelli, IEEE Trans. CAD 1
-//! (1982) 131).
+//! (1982) 131). In a step they are polynomials through the nodes, as the contact forces are, and the oscillators answer exactly.
 
-use super::batch::in_blocks;
-use super::system::System;
+use super::batch::OscillatorBatch;
+use super::collocation::Collocation;
+use super::step_table::StepTable;
+use super::system::dot;
+use crate::numerics::stages::{STAGES, Stages};
 use wide::f64x4;
 
-/// Impulses along the surfaces over time, and the oscillators that they move.
+/// Forces along the surfaces over time, and the oscillators that they move.
 #[derive(Debug, Clone)]
 pub struct FrictionLoad {
-    /// Times in s, ascending, and the impulses in N s until then on what is struck, along x at outer and inner contact.
-    pub course: Vec<(f64, [f64; 2])>,
+    /// By time.
+    pub course: Vec<LoadPoint>,
     /// Displacement along x of the surfaces at both contacts per unit of each oscillator's coordinate. Shape (n).
     pub along: Vec<[f64; 2]>,
-    /// Least level of the steps, between which it acts as kicks.
-    pub level: i32,
+}
+
+/// What forces along x do to what is struck, at outer and inner contact.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LoadPoint {
+    /// In s.
+    pub time: f64,
+    /// Impulses until then, N s.
+    pub impulse: [f64; 2],
+    /// Forces then, N.
+    pub force: [f64; 2],
 }
 
 impl FrictionLoad {
-    /// Impulses in N s until `time` s.
-    fn impulse_until(&self, time: f64) -> [f64; 2] {
-        let after = self.course.partition_point(|(at, _)| *at <= time);
-        match (after.checked_sub(1).map(|before| self.course[before]), self.course.get(after)) {
-            (Some((from, start)), Some((to, end))) => {
-                let share = (time - from) / (to - from);
-                [0, 1].map(|i| start[i] + share * (end[i] - start[i]))
-            }
-            (Some((_, last)), None) => last,
-            (None, _) => [0.0; 2],
-        }
+    /// Impulses in N s until `time` s, and the forces in N then: a cubic polynomial between the points of the course.
+    fn at(&self, time: f64) -> [[f64; 2]; 2] {
+        let after = self.course.partition_point(|point| point.time <= time);
+        let (Some(from), Some(to)) = (after.checked_sub(1).map(|k| self.course[k]), self.course.get(after))
+        else {
+            return [self.course.last().map_or([0.0; 2], |last| last.impulse), [0.0; 2]];
+        };
+        let length = to.time - from.time;
+        let u = (time - from.time) / length;
+        let polynomial = |i: usize| {
+            let [start, end] = [from.force[i], to.force[i]];
+            let mean = (to.impulse[i] - from.impulse[i]) / length;
+            // of the force: its ends, and the mean in between
+            let bent = 3.0 * (2.0 * mean - start - end);
+            let force = start + u * (end - start + bent * (1.0 - u));
+            let impulse = start + u * (0.5 * (end - start + bent) - u * bent / 3.0);
+            [from.impulse[i] + length * u * impulse, force]
+        };
+        let [outer, inner] = [polynomial(0), polynomial(1)];
+        [[outer[0], inner[0]], [outer[1], inner[1]]]
     }
+
+    /// What acts in the step of `h` s from `time` s on: values at the nodes, of which the polynomials have the impulse of the course.
+    pub(super) fn step(&self, collocation: &Collocation, time: f64, h: f64) -> StepLoad {
+        let [from, to] = [time, time + h].map(|time| self.at(time)[0]);
+        let at_nodes = collocation.nodes.map(|node| self.at(time + node * h)[1]);
+        let forces = [0, 1].map(|i| {
+            let forces = at_nodes.map(|forces| forces[i]);
+            let missing = (to[i] - from[i]) / h - dot(&collocation.weights, &forces);
+            forces.map(|force| force + missing)
+        });
+        StepLoad { forces, impulse: [0, 1].map(|i| to[i] - from[i]) }
+    }
+}
+
+/// Forces along the surfaces in a step.
+#[derive(Debug, Clone, Copy)]
+pub struct StepLoad {
+    /// At the nodes, N. Shape (contacts, STAGES).
+    pub forces: [Stages; 2],
+    /// Of the step, N s.
+    pub impulse: [f64; 2],
 }
 
 /// What a load has done in a run.
@@ -43,48 +85,52 @@ pub(super) struct GivenLoad {
     pub(super) work: f64,
 }
 
-/// The load in a run, as kicks between its steps: half of what acts in the step before, and half of what acts in the next one.
-#[derive(Debug)]
-pub(super) struct Kicks<'a> {
-    load: &'a FrictionLoad,
-    /// Participations along the surfaces, and angular frequencies. Shape (blocks).
-    along: [Vec<f64x4>; 2],
-    omega: Vec<f64x4>,
-    pub(super) given: GivenLoad,
+impl GivenLoad {
+    /// Books a step of the `load` with its work in J.
+    pub(super) fn book(&mut self, load: &StepLoad, work: f64) {
+        (0..2).for_each(|i| self.impulse[i] += load.impulse[i]);
+        self.work += work;
+    }
 }
 
-impl<'a> Kicks<'a> {
-    /// Of the load of `system`, if it has one.
-    pub(super) fn new(system: &'a System) -> Option<Self> {
-        let load = system.friction_load.as_ref()?;
-        let along = [0, 1].map(|i| in_blocks(&load.along.iter().map(|along| along[i]).collect::<Vec<_>>()));
-        let omega = in_blocks(&system.oscillators.iter().map(|o| o.omega).collect::<Vec<_>>());
-        Some(Self { load, along, omega, given: GivenLoad::default() })
+/// What the oscillators answer to forces along the surfaces in a step of one length.
+#[derive(Debug, Clone, Copy)]
+pub struct LoadTable {
+    /// `across[i][j][l]`: approaches of contact i at all nodes per force along the surface at contact j and node l, m/N.
+    across: [[[f64x4; STAGES]; 2]; 2],
+    /// The same of the displacements of the surfaces along x.
+    along: [[[f64x4; STAGES]; 2]; 2],
+}
+
+impl LoadTable {
+    /// Of the `table` of `batch`, of which oscillators move the surfaces along x.
+    pub(super) fn new(table: &StepTable, batch: &OscillatorBatch, collocation: &Collocation) -> Self {
+        let approach = |k: usize| batch.blocks[k].approach;
+        let along = |k: usize| batch.along[k];
+        let across = |i: usize| {
+            [0, 1].map(|j| table.coupling_of(batch, collocation, |k| approach(k)[i] * along(k)[j]))
+        };
+        let own = |i: usize| table.coupling_of(batch, collocation, |k| along(k)[i] * along(k)[i]);
+        let mutual = table.coupling_of(batch, collocation, |k| along(k)[0] * along(k)[1]);
+        Self { across: [across(0), across(1)], along: [[own(0), mutual], [mutual, own(1)]] }
     }
 
-    /// Least level of the steps.
-    pub(super) fn level(&self) -> i32 {
-        self.load.level
+    /// What a load with the `forces` at the nodes in N adds to the approaches there, m.
+    pub(super) fn approach(&self, forces: &[Stages; 2]) -> [f64x4; 2] {
+        self.across.each_ref().map(|[outer, inner]| under(outer, &forces[0]) + under(inner, &forces[1]))
     }
 
-    /// Changes the rates `v` after a step of `h` s that ends at `time` s; gives the work in J.
-    ///
-    /// Quick oscillators feel the mean of a step, as [`super::surface_modes::MovingSurfaces::kick`] has it.
-    pub(super) fn kick(&mut self, time: f64, h: f64, v: &mut [f64x4]) -> f64 {
-        let until = self.load.impulse_until(time + 0.5 * h);
-        let impulse = [0, 1].map(|i| f64x4::splat(until[i] - self.given.impulse[i]));
-        self.given.impulse = until;
-        let mut work = f64x4::ZERO;
-        for (k, v) in v.iter_mut().enumerate() {
-            let turn = self.omega[k] * f64x4::splat(0.5 * h);
-            let still = turn.simd_lt(f64x4::splat(f64::MIN_POSITIVE));
-            let mean = still.select(f64x4::ONE, turn.sin() / turn);
-            let change = mean * (self.along[0][k] * impulse[0] + self.along[1][k] * impulse[1]);
-            work += change * (*v + f64x4::splat(0.5) * change);
-            *v += change;
-        }
-        let work = work.reduce_add();
-        self.given.work += work;
-        work
+    /// The same of the displacements along x of the surfaces, under `contacts` N across them also.
+    pub(super) fn along(&self, forces: &[Stages; 2], contacts: &[Stages; 2]) -> [f64x4; 2] {
+        std::array::from_fn(|j| {
+            let [outer, inner] = &self.along[j];
+            let pressed = under(&self.across[0][j], &contacts[0]) + under(&self.across[1][j], &contacts[1]);
+            under(outer, &forces[0]) + under(inner, &forces[1]) - pressed
+        })
     }
+}
+
+/// Answers at the nodes to `forces` there.
+fn under(coupling: &[f64x4; STAGES], forces: &Stages) -> f64x4 {
+    coupling.iter().zip(forces).fold(f64x4::ZERO, |sum, (answers, force)| sum + *answers * *force)
 }

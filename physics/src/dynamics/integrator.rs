@@ -10,7 +10,7 @@ use super::contact_forces::{Course, ForceError, StepSolver};
 use super::driver::{self, Stepper};
 use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
-use super::friction_load::Kicks;
+use super::friction_load::{GivenLoad, StepLoad};
 use super::heating;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::recorder::Recorder;
@@ -68,7 +68,8 @@ struct DryStepper<'a> {
     /// Heat in the drive of a stack, J, if it is asked for.
     heat: Option<f64>,
     damped: bool,
-    kicks: Option<Kicks<'a>>,
+    /// What a load along the surfaces has done.
+    given: GivenLoad,
 }
 
 /// `blocks` as single coordinates; the last of them may be filled up with ones at rest.
@@ -108,7 +109,7 @@ impl<'a> DryStepper<'a> {
             peak_error: options.peak_error,
             heat: options.heat.then_some(0.0),
             damped: system.is_damped(),
-            kicks: Kicks::new(system),
+            given: GivenLoad::default(),
         }
     }
 
@@ -131,7 +132,7 @@ impl<'a> DryStepper<'a> {
         };
         if let Some(recorder) = &mut self.recorder {
             let n = system.size();
-            recorder.step(self.time, flight, &q[..n], &v[..n], &[[0.0; STAGES]; 2])?;
+            recorder.step(self.time, flight, [&q[..n], &v[..n]], &[[0.0; STAGES]; 2], None)?;
         }
         self.add_heat(flight, &[0.0; STAGES]);
         free_flight::advance(
@@ -164,9 +165,6 @@ impl<'a> DryStepper<'a> {
                 return Err(self.stuck(solved));
             }
             self.length.limit();
-            if let Some(kicks) = &self.kicks {
-                self.length.limit_to_level(kicks.level());
-            }
             let h = self.length.length();
             let rest = self.end_time - self.time;
             let shorter = shortened.filter(|w| *w < h.min(rest)).or((rest < h).then_some(rest));
@@ -180,11 +178,13 @@ impl<'a> DryStepper<'a> {
                 None => self.tables.get(batch, collocation, self.length.level(), h),
             };
             let h = table.h;
+            let load = system.friction_load.as_ref().map(|load| load.step(collocation, self.time, h));
             let trial = self.solver.solve(
                 table,
                 &self.course,
                 (&self.q, &self.v),
                 (&mut self.next_q, &mut self.next_v),
+                load.as_ref(),
                 ForceError {
                     absolute: least.map(|least| {
                         let peak = CONVERGED * share * self.bounds.force_defect * least;
@@ -216,7 +216,7 @@ impl<'a> DryStepper<'a> {
                 contact.add_defect(defect);
             }
             self.energy.book(energy_error);
-            self.accept(trial)?;
+            self.accept(trial, load)?;
             if shorter.is_none() {
                 self.length.lengthen(excess);
             }
@@ -261,14 +261,15 @@ impl<'a> DryStepper<'a> {
         if self.damped {
             stored - trial.work[0] - trial.work[1]
         } else {
-            stored + trial.motion - self.course.motion
+            stored + trial.motion - self.course.motion - trial.load_work
         }
     }
 
-    fn accept(&mut self, trial: Course) -> Result<()> {
+    fn accept(&mut self, trial: Course, load: Option<StepLoad>) -> Result<()> {
         if let Some(recorder) = &mut self.recorder {
             let n = self.solver.system.size();
-            recorder.step(self.time, trial.h, &flat(&self.q)[..n], &flat(&self.v)[..n], &trial.stages())?;
+            let state = [&flat(&self.q)[..n], &flat(&self.v)[..n]];
+            recorder.step(self.time, trial.h, state, &trial.stages(), load.as_ref())?;
         }
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             let course = StepCourse {
@@ -280,16 +281,16 @@ impl<'a> DryStepper<'a> {
             };
             contact.book(self.solver.collocation, &course);
         }
-        self.add_peaks(&trial);
+        self.add_peaks(&trial, load.as_ref());
+        if let Some(load) = load {
+            self.given.book(&load, trial.load_work);
+        }
         self.add_heat(trial.h, &trial.stages()[0]);
         std::mem::swap(&mut self.q, &mut self.next_q);
         std::mem::swap(&mut self.v, &mut self.next_v);
         self.time += trial.h;
         self.steps += 1;
         self.course = trial;
-        if let Some(kicks) = &mut self.kicks {
-            self.course.motion += kicks.kick(self.time, self.course.h, &mut self.v);
-        }
         Ok(())
     }
 
@@ -302,14 +303,21 @@ impl<'a> DryStepper<'a> {
     }
 
     /// Books the largest forces of the step from the present state to the next.
-    fn add_peaks(&mut self, trial: &Course) {
+    fn add_peaks(&mut self, trial: &Course, load: Option<&StepLoad>) {
         let StepSolver { system, collocation, batch, .. } = &self.solver;
         let h = trial.h;
         let forces = || trial.stages().map(|stages| collocation.derivatives(&stages, h));
         let local = |approach: [f64; 2]| [0, 1].map(|i| approach[i] - system.gap[i]);
+        let loads = load.map(|load| load.forces.map(|stages| collocation.derivatives(&stages, h)));
+        let pushed = |t: f64| loads.as_ref().map(|loads| batch.pushed_after(loads, t));
         let motion = |place: f64| {
-            let [approach, rate, acceleration] =
-                batch.approach_after((&self.q, &self.v), &forces(), place * h);
+            let mut motion = batch.approach_after((&self.q, &self.v), &forces(), place * h);
+            if let Some(pushed) = pushed(place * h) {
+                for (value, added) in motion.as_flattened_mut().iter_mut().zip(pushed.as_flattened()) {
+                    *value += added;
+                }
+            }
+            let [approach, rate, acceleration] = motion;
             [
                 local(approach),
                 rate.map(|rate| rate * h),
@@ -318,6 +326,14 @@ impl<'a> DryStepper<'a> {
         };
         let samples = |intervals: usize| {
             let mut samples = batch.approaches_within((&self.q, &self.v), &forces(), h, intervals);
+            for (k, [approach, rate]) in samples.iter_mut().enumerate().filter(|(k, _)| *k > 0) {
+                if let Some([moved, sped, _]) = pushed(h * k as f64 / intervals as f64) {
+                    for i in 0..2 {
+                        approach[i] += moved[i];
+                        rate[i] += sped[i];
+                    }
+                }
+            }
             for [approach, rate] in &mut samples {
                 (*approach, *rate) = (local(*approach), rate.map(|rate| rate * h));
             }
@@ -354,7 +370,7 @@ impl<'a> DryStepper<'a> {
             fluid: FluidAccount::default(),
             steps: self.steps,
             heat: self.heat,
-            along: self.kicks.map(|kicks| kicks.given).unwrap_or_default(),
+            along: self.given,
         };
         closing.integration(self.recorder.map(Recorder::finish))
     }

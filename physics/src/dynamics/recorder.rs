@@ -1,6 +1,7 @@
 //! Sampling of the course over time; a run that is not asked for its history has no recorder.
 
 use super::collocation::{Collocation, POINTS};
+use super::friction_load::{FrictionLoad, StepLoad};
 use super::integration::Options;
 use super::system::{System, dot};
 use crate::error::Result;
@@ -72,18 +73,31 @@ impl<'a, const P: usize> Recorder<'a, P> {
         Some(recorder)
     }
 
-    /// Samples the step of length `h` that starts at `time` in the state (`q`, `v`) under `forces` at the nodes.
+    /// Samples the step of length `h` that starts at `time` in the state (q, v) under `forces` at the nodes, and a `load` along the surfaces.
     ///
     /// # Errors
     /// As the contact's system of equations.
-    pub fn step(&mut self, time: f64, h: f64, q: &[f64], v: &[f64], forces: &[Stages; 2]) -> Result<()> {
+    pub fn step(
+        &mut self,
+        time: f64,
+        h: f64,
+        [q, v]: [&[f64]; 2],
+        forces: &[Stages; 2],
+        load: Option<&StepLoad>,
+    ) -> Result<()> {
         if self.forces_alone {
             self.step_of_forces(time, h, forces);
             return Ok(());
         }
         let [b0, b1] = &self.system.approach;
+        let load = load.zip(self.system.friction_load.as_ref());
         self.step_under(time, h, q, v, forces[0], |k| {
-            std::array::from_fn(|l| -(b0[k] * forces[0][l] + b1[k] * forces[1][l]))
+            std::array::from_fn(|l| {
+                let across = -(b0[k] * forces[0][l] + b1[k] * forces[1][l]);
+                load.map_or(across, |(load, FrictionLoad { along, .. })| {
+                    across + along[k][0] * load.forces[0][l] + along[k][1] * load.forces[1][l]
+                })
+            })
         })
     }
 

@@ -4,6 +4,7 @@
 //! [`super::friction_load`].
 //! Bodies, modes of what is struck and the contacts' tangential flexibility take part.
 
+use super::friction_load::LoadPoint;
 use super::surface_modes::{MovingSurfaces, SurfaceMode};
 use crate::contact::{Press, TangentialContact};
 
@@ -64,8 +65,8 @@ pub struct Slid {
     pub dissipated: [f64; 2],
     /// Impulses in N s along x on the bodies by forces across surfaces that turn.
     pub tilted: [f64; 2],
-    /// Impulses until each time in s.
-    pub course: Vec<(f64, [f64; 2])>,
+    /// Forces and impulses on the struck body by time.
+    pub course: Vec<LoadPoint>,
     /// Largest velocity in m/s at which the forces along the surfaces move a contact across them.
     pub across: f64,
     /// Estimated error of the velocities along the surfaces, over the speed; 0 if it was not looked for.
@@ -78,7 +79,7 @@ impl Sliding<'_> {
     /// Moves the bodies while they are pressed together as `presses` has it at every `time` in s, in `finer` times as many steps as seem enough.
     /// With fewer not every sample counts. Shapes (samples), (contacts, samples).
     pub fn slide(mut self, time: &[f64], presses: &[Vec<Press>; 2], finer: f64) -> Slid {
-        let mut slid = Slid { course: vec![(0.0, [0.0; 2])], finer, ..Slid::default() };
+        let mut slid = Slid { course: vec![LoadPoint::default()], finer, ..Slid::default() };
         let mut velocity = self.velocity;
         let mut surfaces = MovingSurfaces::new(self.modes);
         let mut earlier = self.forces();
@@ -123,7 +124,7 @@ impl Sliding<'_> {
                 slid.across = slid.across.max(surfaces.speed_across());
                 (0..2).for_each(|i| slid.impulse[i] += 0.5 * h * (before[i] + after[i]));
             }
-            slid.course.push((time[end], slid.impulse));
+            slid.course.push(LoadPoint { time: time[end], impulse: slid.impulse, force: self.forces() });
         }
         for (i, contact) in self.contacts.iter().enumerate() {
             slid.dissipated[i] = contact.as_ref().map_or(0.0, TangentialContact::dissipated);

@@ -1,7 +1,8 @@
 //! What the oscillators of a bank answer in a step of one length.
 
-use super::batch::{Block, OscillatorBatch};
+use super::batch::{Block, OscillatorBatch, pushed};
 use super::collocation::Collocation;
+use super::friction_load::{LoadTable, StepLoad};
 use super::system::dot;
 use crate::numerics::duhamel::MOMENTS;
 use crate::numerics::stages::{STAGES, Stages, powers};
@@ -20,6 +21,8 @@ pub struct StepTable {
     pub coupling: [[f64x4; STAGES]; 3],
     /// Of the bank's oscillators of a circuit coordinate and rate at the end under forces tau^p / p!.
     fed: Vec<[Stages; 2]>,
+    /// Of forces along the surfaces, where they are known.
+    pub load: Option<LoadTable>,
     /// `coefficients[p][l]`: coefficient of tau^p / p! in the polynomial of a force per value at Gauss point l.
     coefficients: [Stages; STAGES],
 }
@@ -32,6 +35,7 @@ impl StepTable {
             oscillators: bytemuck::zeroed_vec((STAGES * 2 + MOMENTS) * blocks),
             coupling: [[f64x4::ZERO; STAGES]; 3],
             fed: Vec::new(),
+            load: None,
             coefficients: Default::default(),
         }
     }
@@ -87,6 +91,31 @@ impl StepTable {
         }
         self.fed.clear();
         self.fed.extend(batch.fed.iter().map(|fed| fed.answers(h)));
+        self.load = (!batch.along.is_empty()).then(|| LoadTable::new(self, batch, collocation));
+    }
+
+    /// As [`Self::coupling`], of any two ways to see the oscillators of which `product` gives the product in each block.
+    pub fn coupling_of(
+        &self,
+        batch: &OscillatorBatch,
+        collocation: &Collocation,
+        product: impl Fn(usize) -> f64x4,
+    ) -> [f64x4; STAGES] {
+        let mut columns = [[0.0; STAGES]; STAGES];
+        for j in 0..STAGES {
+            let t = collocation.nodes[j] * self.h;
+            let powers = powers(t);
+            let mut answers = [f64x4::ZERO; STAGES];
+            for (k, block) in batch.blocks.iter().enumerate() {
+                let moments = block.moments(t, &powers);
+                (0..STAGES).for_each(|p| answers[p] += product(k) * moments[p + 2]);
+            }
+            let answers = answers.map(f64x4::reduce_add);
+            for l in 0..STAGES {
+                columns[l][j] = (0..STAGES).map(|p| self.coefficients[p][l] * answers[p]).sum();
+            }
+        }
+        columns.map(f64x4::from)
     }
 
     /// Approaches at the Gauss points, in m, if no force acted during the step; `gap` in m.
@@ -98,19 +127,33 @@ impl StepTable {
         q: &[f64x4],
         v: &[f64x4],
     ) -> [f64x4; 2] {
+        let free = self.free_motion(batch, |k| batch.blocks[k].approach, q, v);
+        std::array::from_fn(|i| free[i] - f64x4::splat(gap[i]))
+    }
+
+    /// What is `seen` of the oscillators at the nodes in two ways, m, if no force acted during the step.
+    #[inline(always)]
+    pub fn free_motion(
+        &self,
+        batch: &OscillatorBatch,
+        seen: impl Fn(usize) -> [f64x4; 2],
+        q: &[f64x4],
+        v: &[f64x4],
+    ) -> [f64x4; 2] {
         let n = q.len();
         let (blocks, v) = (&batch.blocks[..n], &v[..n]);
         let rows: [&[f64x4]; 2 * STAGES] = std::array::from_fn(|row| &self.oscillators[row * n..][..n]);
         let mut sums = [[f64x4::ZERO; STAGES]; 2];
         for k in 0..n {
             let rate = v[k] + blocks[k].damping * q[k];
+            let seen = seen(k);
             for j in 0..STAGES {
                 let value = rows[2 * j][k] * q[k] + rows[2 * j + 1][k] * rate;
-                sums[0][j] += blocks[k].approach[0] * value;
-                sums[1][j] += blocks[k].approach[1] * value;
+                sums[0][j] += seen[0] * value;
+                sums[1][j] += seen[1] * value;
             }
         }
-        std::array::from_fn(|i| f64x4::from(sums[i].map(f64x4::reduce_add)) - f64x4::splat(gap[i]))
+        sums.map(|sums| f64x4::from(sums.map(f64x4::reduce_add)))
     }
 
     /// Writes the state at the end of the step under the forces at the Gauss points and gives the approaches there,
@@ -159,5 +202,26 @@ impl StepTable {
             sums[0] -= fed.approach * displacement;
         }
         (sums, 0.5 * energy.reduce_add())
+    }
+
+    /// Adds what the `load` does to the state at the end of the step; gives what it adds to the approaches, and the energy of all then in J.
+    pub fn advance_under(
+        &self,
+        batch: &OscillatorBatch,
+        load: &StepLoad,
+        (q_end, v_end): (&mut [f64x4], &mut [f64x4]),
+    ) -> ([f64; 2], f64) {
+        let n = q_end.len();
+        let polynomial = load.forces.map(|forces| self.coefficients.map(|row| dot(&row, &forces)));
+        let (mut sums, mut energy) = ([f64x4::ZERO; 2], f64x4::ZERO);
+        for (k, (block, along)) in batch.blocks.iter().zip(&batch.along).enumerate() {
+            let moments = std::array::from_fn(|p| self.oscillators[(2 * STAGES + p) * n + k]);
+            let [displacement, rate] = pushed(&moments, along, &polynomial);
+            q_end[k] += displacement;
+            v_end[k] += rate;
+            (0..2).for_each(|i| sums[i] += block.approach[i] * displacement);
+            energy += v_end[k] * v_end[k] + block.stiffness * (q_end[k] * q_end[k]);
+        }
+        (sums.map(f64x4::reduce_add), 0.5 * energy.reduce_add())
     }
 }

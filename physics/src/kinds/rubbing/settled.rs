@@ -15,8 +15,6 @@ const NEGLIGIBLE_ACROSS: f64 = 1e-4;
 pub(in crate::kinds) const SETTLED: f64 = 1e-4;
 /// Rounds at most.
 const MOST_ROUNDS: usize = 12;
-/// Least levels of the steps between which the load acts as kicks: that of the rounds, and the finest that is tried.
-const LEVELS: [i32; 2] = [5, 9];
 
 impl Rubbing {
     /// The impact of `system` that `run` finds, with friction's effect on the motion across the surfaces if there is one, and the contact
@@ -40,13 +38,12 @@ impl Rubbing {
         // friction changes little: steps that are right without it are right with it
         let converged = smooth.converged.or(options.converged);
         let (once, error_estimate) = (Options { converged, ..with_forces }, smooth.error_estimate);
-        let [first, finest] = LEVELS;
-        let load = FrictionLoad { course: Vec::new(), along: participations(system, modes), level: first };
-        let mut kicked = System { friction_load: Some(load), ..system.clone() };
+        let load = FrictionLoad { course: Vec::new(), along: participations(system, modes) };
+        let mut loaded = System { friction_load: Some(load), ..system.clone() };
         let (mut found, mut error, mut change_before) = (smooth, 0.0_f64, f64::NAN);
         if slid.across > NEGLIGIBLE_ACROSS * system.speed {
             for _ in 0..MOST_ROUNDS {
-                let (next, change) = self.kicked(&mut kicked, first, (&found, &slid), &once, &run)?;
+                let (next, change) = self.loaded(&mut loaded, (&found, &slid), &once, &run)?;
                 // each round leaves the same share of the change before
                 let share = if change == 0.0 { 0.0 } else { change / change_before };
                 error = if share < 1.0 { change * share / (1.0 - share) } else { f64::INFINITY };
@@ -56,41 +53,29 @@ impl Rubbing {
                     break;
                 }
             }
-            // kicks are of second order in the steps between them
-            for level in first + 1..=finest {
-                let (next, change) = self.kicked(&mut kicked, level, (&found, &slid), &once, &run)?;
-                found = next;
-                if error + change / 3.0 <= SETTLED || level == finest {
-                    error += change / 3.0;
-                    break;
-                }
-            }
-            slid = Slid { error: slid.error, ..self.slide_in_steps(&found, slid.finer)? };
         }
         if *options != with_forces {
-            let last = if change_before.is_nan() { system } else { &kicked };
+            let last = if change_before.is_nan() { system } else { &loaded };
             found = run(last, &Options { converged, ..*options })?;
         }
         Ok(Integration { friction: Some(Settled { error, slid }), converged, error_estimate, ..found })
     }
 
-    /// The impact of the `kicked` system under the load of the round before, in which friction did `slid` and which came to `found`; with the
+    /// The impact of the `loaded` system under the load of the round before, in which friction did `slid` and which came to `found`; with the
     /// change of velocities, over the speed, and force peaks, relative, from that.
-    fn kicked(
+    fn loaded(
         &self,
-        kicked: &mut System,
-        level: i32,
+        loaded: &mut System,
         (found, slid): (&Integration, &Slid),
         options: &Options,
         run: impl Fn(&System, &Options) -> Result<Integration>,
     ) -> Result<(Integration, f64)> {
-        if let Some(load) = &mut kicked.friction_load {
+        if let Some(load) = &mut loaded.friction_load {
             load.course.clone_from(&slid.course);
-            load.level = level;
         }
-        let next = run(kicked, options)?;
+        let next = run(loaded, options)?;
         let peaks = [found, &next].map(|result| result.contacts.map(|contact| contact.force_peak));
-        let [velocity, force] = differences(kicked, [found.velocity, next.velocity], peaks);
+        let [velocity, force] = differences(loaded, [found.velocity, next.velocity], peaks);
         Ok((next, velocity.max(force)))
     }
 }
