@@ -139,7 +139,7 @@ impl TangentialContact {
         let inside = place.simd_lt(f64x4::splat(press.radius));
         let touched = place.simd_lt(f64x4::splat(before.radius));
         // what the growing contact reaches in between takes part from then on
-        let reached = (f64x4::splat(press.radius) - place) / f64x4::splat(press.radius - before.radius);
+        let reached = (f64x4::splat(press.radius) - place) * (press.radius - before.radius).recip();
         let parted = |press: &Press| match self.beta {
             0.0 => f64x4::ZERO,
             beta => f64x4::from(place.to_array().map(|place| parted(beta, place, press.radius)))
@@ -158,11 +158,14 @@ impl TangentialContact {
     fn moved(&mut self, springs: usize, radial: &[f64; 2], at: &SpringStep, step: f64) -> f64x4 {
         let [along, across] = self.deflections[springs];
         let wanted = [along + at.share * step + at.radial * radial[0], across + at.radial * radial[1]];
-        let Some(creeping) = &mut self.creeping else {
-            self.deflections[springs] = at_most(wanted, at.most);
-            return self.deflections[springs][0];
-        };
-        creeping.moved(springs, wanted, at.most, &mut self.deflections[springs])
+        let deflections = &mut self.deflections[springs];
+        match &mut self.creeping {
+            Some(creeping) => return creeping.moved(springs, wanted, at.most, deflections),
+            // like materials: along the motion alone
+            None if self.beta == 0.0 => deflections[0] = wanted[0].fast_min(at.most).fast_max(-at.most),
+            None => *deflections = at_most(wanted, at.most),
+        }
+        deflections[0]
     }
 }
 

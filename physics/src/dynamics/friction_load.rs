@@ -105,14 +105,12 @@ pub struct LoadTable {
 impl LoadTable {
     /// Of the `table` of `batch`, of which oscillators move the surfaces along x.
     pub(super) fn new(table: &StepTable, batch: &OscillatorBatch, collocation: &Collocation) -> Self {
-        let approach = |k: usize| batch.blocks[k].approach;
-        let along = |k: usize| batch.along[k];
-        let across = |i: usize| {
-            [0, 1].map(|j| table.coupling_of(batch, collocation, |k| approach(k)[i] * along(k)[j]))
-        };
-        let own = |i: usize| table.coupling_of(batch, collocation, |k| along(k)[i] * along(k)[i]);
-        let mutual = table.coupling_of(batch, collocation, |k| along(k)[0] * along(k)[1]);
-        Self { across: [across(0), across(1)], along: [[own(0), mutual], [mutual, own(1)]] }
+        let couplings = table.couplings(batch, collocation, |k| {
+            let ([a, b], [x, y]) = (batch.blocks[k].approach, batch.along[k]);
+            [a * x, a * y, b * x, b * y, x * x, x * y, y * y]
+        });
+        let [ax, ay, bx, by, xx, xy, yy] = couplings;
+        Self { across: [[ax, ay], [bx, by]], along: [[xx, xy], [xy, yy]] }
     }
 
     /// What a load with the `forces` at the nodes in N adds to the approaches there, m.

@@ -98,7 +98,10 @@ impl Sliding<'_> {
             let mut press = from;
             for step in 1..=count as usize {
                 let (before, across) = (self.forces(), press.map(|press| press.force));
-                press = [0, 1].map(|i| from[i].between(&to[i], step as f64 / count));
+                press = [0, 1].map(|i| match step as f64 / count {
+                    1.0 => to[i],
+                    share => from[i].between(&to[i], share),
+                });
                 self.kick(&mut velocity, before, 0.5 * h);
                 surfaces.kick(before, 0.5 * h);
                 let by_pressing = surfaces.press(across, press.map(|press| press.force));

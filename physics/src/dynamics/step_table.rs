@@ -94,28 +94,32 @@ impl StepTable {
         self.load = (!batch.along.is_empty()).then(|| LoadTable::new(self, batch, collocation));
     }
 
-    /// As [`Self::coupling`], of any two ways to see the oscillators of which `product` gives the product in each block.
-    pub fn coupling_of(
+    /// As [`Self::coupling`], of pairs of ways to see the oscillators of which `products` gives the products in each block.
+    pub fn couplings<const PAIRS: usize>(
         &self,
         batch: &OscillatorBatch,
         collocation: &Collocation,
-        product: impl Fn(usize) -> f64x4,
-    ) -> [f64x4; STAGES] {
-        let mut columns = [[0.0; STAGES]; STAGES];
+        products: impl Fn(usize) -> [f64x4; PAIRS],
+    ) -> [[f64x4; STAGES]; PAIRS] {
+        let mut columns = [[[0.0; STAGES]; STAGES]; PAIRS];
         for j in 0..STAGES {
             let t = collocation.nodes[j] * self.h;
             let powers = powers(t);
-            let mut answers = [f64x4::ZERO; STAGES];
+            let mut answers = [[f64x4::ZERO; STAGES]; PAIRS];
             for (k, block) in batch.blocks.iter().enumerate() {
                 let moments = block.moments(t, &powers);
-                (0..STAGES).for_each(|p| answers[p] += product(k) * moments[p + 2]);
+                for (answers, product) in answers.iter_mut().zip(products(k)) {
+                    (0..STAGES).for_each(|p| answers[p] += product * moments[p + 2]);
+                }
             }
-            let answers = answers.map(f64x4::reduce_add);
-            for l in 0..STAGES {
-                columns[l][j] = (0..STAGES).map(|p| self.coefficients[p][l] * answers[p]).sum();
+            for (columns, answers) in columns.iter_mut().zip(answers) {
+                let answers = answers.map(f64x4::reduce_add);
+                for l in 0..STAGES {
+                    columns[l][j] = (0..STAGES).map(|p| self.coefficients[p][l] * answers[p]).sum();
+                }
             }
         }
-        columns.map(f64x4::from)
+        columns.map(|columns| columns.map(f64x4::from))
     }
 
     /// Approaches at the Gauss points, in m, if no force acted during the step; `gap` in m.
