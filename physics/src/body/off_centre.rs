@@ -1,6 +1,7 @@
 //! Thin circular plate (Kirchhoff) that is struck off its centre: modes with nodal diameters, too.
 
 use super::ModalBody;
+use super::continuum::ModesAlong;
 use super::kirchhoff::UnitPlates;
 use crate::analytical::circular_plate::rigidity;
 use crate::error::Result;
@@ -10,6 +11,9 @@ use std::f64::consts::PI;
 
 /// Wave number by which the edge raises the modes, and some more.
 const EDGE: f64 = 6.0;
+/// Wave number times thickness up to which waves turn the normal under a force along the face more than a half-space does: measured on
+/// continuum plates ([`ModesAlong::new`]).
+const SHORTEST_WAVE: f64 = 0.7;
 /// Points of the quadrature over the waves left out.
 const QUADRATURE: usize = 64;
 
@@ -57,6 +61,25 @@ pub fn modes(plate: &Plate, offset: f64, modes: usize, plates: &UnitPlates) -> R
         residual: None,
     };
     Ok(OffCentreModes { body, along: found.iter().map(|mode| mode.2).collect() })
+}
+
+/// Modes with one nodal diameter of `plate`, clamped or simply supported: its faces move along themselves at the centre, where its normal
+/// turns, and it stays.
+///
+/// # Errors
+/// As [`UnitPlates::modes`].
+pub fn modes_along(plate: &Plate, plates: &UnitPlates) -> Result<ModesAlong> {
+    let count = (SHORTEST_WAVE * plate.radius / (PI * plate.thickness)) as usize + 1;
+    let unit = plates.unit(plate.edge, plate.material.poisson_ratio, count, 1)?;
+    let highest = unit.frequency(plate) * (SHORTEST_WAVE * plate.radius / plate.thickness).powi(2);
+    let half = 0.5 * plate.thickness;
+    let slopes = unit.slopes(plate, &[0.0]);
+    let modes = unit.scale(plate).omega.into_iter().zip(slopes);
+    let (omega, along) = modes
+        .filter(|(omega, _)| *omega <= highest)
+        .map(|(omega, slope)| (omega, [-half * slope[0], half * slope[0]]))
+        .unzip();
+    Ok(ModesAlong { omega, along })
 }
 
 /// Static flexibility in m/N of the modes of `plate` beyond the angular frequency `omega` in rad/s: at the point `offset` m from the centre,

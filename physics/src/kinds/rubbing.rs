@@ -42,9 +42,9 @@ pub(super) enum StruckSurface {
 }
 
 impl StruckSurface {
-    /// Of a plate in `system`, struck at `offset` m from its centre.
-    pub(super) fn plate(plate: &Plate, offset: f64, system: &System) -> Self {
-        let mut rigid = Vec::new();
+    /// Of a plate in `system`, struck at `offset` m from its centre, that moves `along` itself in more modes than those of the system.
+    pub(super) fn plate(plate: &Plate, offset: f64, system: &System, along: Vec<SurfaceMode>) -> Self {
+        let mut rigid = along;
         if plate.edge == crate::scene::Edge::Free {
             let (mass, arm) = (plate.mass(), 0.5 * plate.thickness);
             let inertia = mass * (0.25 * plate.radius.powi(2) + arm * arm / 3.0);

@@ -1,6 +1,6 @@
 //! Bodies of model C through the cache on disk.
 
-use super::{ContinuumPlate, MeshOptions, WEIGHTED};
+use super::{ContinuumPlate, MeshOptions, ModesAlong, WEIGHTED};
 use crate::body::cache::Cache;
 use crate::error::Result;
 use crate::scene::hash::drop_inelastic;
@@ -37,6 +37,15 @@ pub fn plate_in(
     cache.get_or_build(&plate_inputs(plate, patch_radius, modes, mesh), || {
         ContinuumPlate::new(plate, patch_radius, modes, mesh)
     })
+}
+
+/// [`ModesAlong::new`] through `cache`.
+///
+/// # Errors
+/// As [`ModesAlong::new`].
+pub fn modes_along_in(cache: &Cache, plate: &Plate, mesh: &MeshOptions) -> Result<ModesAlong> {
+    let content = inputs(json!({ "body": "plate along its faces", "plate": plate, "mesh": mesh }));
+    cache.get_or_build(&content, || ModesAlong::new(plate, mesh))
 }
 
 /// [`super::face_shapes`] through the user's cache.

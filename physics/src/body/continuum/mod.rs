@@ -6,6 +6,7 @@
 //! that the kept modes lack stays as a static residual, without the half-space part that
 //! Hertz's law already has.
 
+mod along;
 mod assembly;
 mod basis;
 pub mod cached;
@@ -21,6 +22,7 @@ mod shared;
 mod sphere;
 mod unit;
 
+pub use along::ModesAlong;
 pub use patch::{half_space_flexibility, half_space_flexibility_along};
 pub use plate::{ContinuumPlate, PlateMode, WEIGHTED, eigenfrequencies, face_shapes, plate};
 pub use shared::{UnitBodies, Varied};

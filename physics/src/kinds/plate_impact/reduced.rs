@@ -2,13 +2,16 @@
 
 mod run;
 
-use super::assembled::{Assembled, RequestedModes, continuum, kirchhoff, off_centre_continuum};
+use super::assembled::{
+    Assembled, RequestedModes, continuum, kirchhoff, modes_along, off_centre_continuum,
+};
 use super::results::PlateQuantities;
 use super::shared::SharedBodies;
 use super::{MAX_MODES, PlateImpact};
 use crate::body::cache::Cache;
 use crate::dynamics::memory::Memory;
 use crate::dynamics::sliding::Tilt;
+use crate::dynamics::surface_modes::SurfaceMode;
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
@@ -42,8 +45,8 @@ pub struct Reduced {
     scene: Scene,
 }
 
-/// The bodies of `setup` that move along its plate in `system`, if they do.
-fn rubbing(setup: &PlateImpact, system: &System) -> Option<Rubbing> {
+/// The bodies of `setup` that move along its plate in `system`, if they do; the plate also moves `along` itself.
+fn rubbing(setup: &PlateImpact, system: &System, along: Vec<SurfaceMode>) -> Option<Rubbing> {
     let PlateImpact { outer, inner, plate, .. } = setup;
     let masses = [outer.shape.mass(&outer.material), inner.shape.mass(&inner.material)];
     moves_along(outer, Some(inner)).then(|| Rubbing {
@@ -51,7 +54,7 @@ fn rubbing(setup: &PlateImpact, system: &System) -> Option<Rubbing> {
         tilt: (plate.edge != Edge::Free).then_some(Tilt { arm: 0.5 * plate.thickness, masses }),
         outer: outer.clone(),
         inner: Some(inner.clone()),
-        struck: StruckSurface::plate(plate, outer.offset, system),
+        struck: StruckSurface::plate(plate, outer.offset, system, along),
         aside: Vec::new(),
         contacts: touching(setup, system),
     })
@@ -107,7 +110,7 @@ impl Reduced {
             }
             Model::C if setup.outer.offset > 0.0 => {
                 let (built, other) = off_centre_continuum(setup, modes)?;
-                return Ok(Self { other, ..Self::of(built, model, scene)? });
+                return Ok(Self { other, ..Self::of(built, model, scene, bodies)? });
             }
             Model::C => {
                 let predictor = bodies.predictor(setup)?;
@@ -115,7 +118,7 @@ impl Reduced {
                 continuum(setup, requested, &predictor, bodies.continua())?
             }
         };
-        Self::of(built, model, scene)
+        Self::of(built, model, scene, bodies)
     }
 
     /// As [`Reduced::new`] with the bodies of model C from `cache`.
@@ -126,13 +129,14 @@ impl Reduced {
         Self::in_series(scene.clone(), model, modes, &SharedBodies::meshed(cache.clone()))
     }
 
-    fn of(built: Assembled, model: Model, scene: Scene) -> Result<Self> {
+    fn of(built: Assembled, model: Model, scene: Scene, bodies: &SharedBodies) -> Result<Self> {
         let Assembled { mut system, omega_next, fluid, warnings } = built;
         let memory = scene.plate_impact()?.memory(&system)?;
         if let Some(memory) = &memory {
             system.first_frequency = memory.frequency(system.first_frequency);
         }
-        let rubbing = rubbing(scene.plate_impact()?, &system);
+        let along = modes_along(scene.plate_impact()?, model, bodies)?;
+        let rubbing = rubbing(scene.plate_impact()?, &system, along);
         Ok(Self {
             model,
             system,

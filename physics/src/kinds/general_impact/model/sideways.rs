@@ -30,7 +30,7 @@ impl ContactModel {
                 let rigid = self.between.as_ref().map_or_else(Vec::new, |between| between.rigid.clone());
                 StruckSurface::elastic(rigid, &self.system)
             }
-            Some(Struck::Plate(plate)) => StruckSurface::plate(plate, 0.0, &self.system),
+            Some(Struck::Plate(plate)) => StruckSurface::plate(plate, 0.0, &self.system, Vec::new()),
             Some(Struck::Wall(_)) => StruckSurface::Moving(Vec::new()),
             None => StruckSurface::OtherBody,
         };
