@@ -8,7 +8,6 @@
 use super::batch::OscillatorBatch;
 use super::collocation::{Collocation, POINTS, Points};
 use super::contact_balance::work;
-use super::friction_load::StepLoad;
 use super::point_laws::{HertzPoints, PointLaw, ResidualPoints, Visit};
 use super::step_table::StepTable;
 use super::system::{System, dot};
@@ -39,8 +38,9 @@ pub struct Course {
     pub stored: f64,
     /// Kinetic and strain energy of the bodies at the end in J.
     pub motion: f64,
-    /// Work of known forces along the surfaces on the bodies in J.
-    pub load_work: f64,
+    /// Forces along the surfaces at the nodes in N, where they are known as shares of those across, and their work on the bodies in J.
+    pub along: [Stages; 2],
+    pub along_work: f64,
 }
 
 impl Course {
@@ -109,46 +109,50 @@ impl<'a> StepSolver<'a> {
     }
 
     /// Solves a step of the length of `table` that follows on `before`, from the state `now` into `next`; `None` if
-    /// the sweeps do not settle within `force_error` or the contact has no equilibrium. A known `load` acts along the surfaces.
+    /// the sweeps do not settle within `force_error` or the contact has no equilibrium. Forces along the surfaces
+    /// are `ratios` of those across them.
     pub fn solve(
         &mut self,
         table: &StepTable,
         before: &Course,
         now: (&[f64x4], &[f64x4]),
         (next_q, next_v): (&mut [f64x4], &mut [f64x4]),
-        load: Option<&StepLoad>,
+        ratios: Option<&[Stages; 2]>,
         force_error: ForceError,
     ) -> Option<Course> {
-        let mut free = table.free_approach(&self.batch, self.system.gap, now.0, now.1);
-        let load = load.zip(table.load.as_ref());
-        if let Some((load, answers)) = load {
-            let added = answers.approach(&load.forces);
-            (0..2).for_each(|i| free[i] += added[i]);
-        }
+        let free = table.free_approach(&self.batch, self.system.gap, now.0, now.1);
+        let rubbed = ratios.zip(table.load.as_ref());
+        let [own0, mutual, own1] = &table.coupling;
+        let with_friction = rubbed.map(|(ratios, load)| load.coupling(&table.coupling, ratios));
+        let coupling = match &with_friction {
+            Some(all) => all.each_ref(),
+            None => [own0, mutual, mutual, own1],
+        };
         let unforced = free.map(f64x4::to_array);
         let guess = self.guess(before, table.h).unwrap_or(unforced);
         let laws = &self.system.laws;
         let solved = match self.system.residual {
-            None => self.sweep(table, &free, guess, MAX_SWEEPS, force_error, HertzPoints::new(laws, table)),
+            None => self.sweep(coupling, &free, guess, MAX_SWEEPS, force_error, HertzPoints::new(laws, table)),
             Some(residual) => {
                 let points = |full| ResidualPoints::new(laws, residual, table, full);
-                self.sweep(table, &free, guess, MAX_NEWTON_SWEEPS, force_error, points(false))
-                    .or_else(|| self.sweep(table, &free, unforced, MAX_SWEEPS, force_error, points(true)))
+                self.sweep(coupling, &free, guess, MAX_NEWTON_SWEEPS, force_error, points(false))
+                    .or_else(|| self.sweep(coupling, &free, unforced, MAX_SWEEPS, force_error, points(true)))
             }
         };
         let (unknowns, contraction) = solved?;
         self.contraction = contraction;
         let (mut end, mut motion) = table.advance(&self.batch, &unknowns.force, now, (next_q, next_v));
-        let mut load_work = 0.0;
-        if let Some((load, answers)) = load {
-            let (added, all) = table.advance_under(&self.batch, load, (next_q, next_v));
+        let (mut along, mut along_work) = ([[0.0; STAGES]; 2], 0.0);
+        if let Some((ratios, load)) = rubbed {
+            along = [0, 1].map(|i| std::array::from_fn(|j| ratios[i][j] * unknowns.force[i][j]));
+            let (added, all) = table.advance_along(&self.batch, &along, (next_q, next_v));
             (end, motion) = ([end[0] + added[0], end[1] + added[1]], all);
             let free = table.free_motion(&self.batch, |k| self.batch.along[k], now.0, now.1);
-            let moved = answers.along(&load.forces, &unknowns.force);
+            let moved = load.along(&along, &unknowns.force);
             let [start, last] = [now.0, next_q].map(|q| self.batch.moved_along(q));
             for i in 0..2 {
                 let nodes = (free[i] + moved[i]).to_array();
-                load_work += work(self.collocation, &load.forces[i], &points(start[i], nodes, last[i]));
+                along_work += work(self.collocation, &along[i], &points(start[i], nodes, last[i]));
             }
         }
         let end_approach = [end[0] - self.system.gap[0], end[1] - self.system.gap[1]];
@@ -168,18 +172,19 @@ impl<'a> StepSolver<'a> {
             work: [0, 1].map(|i| work(self.collocation, &unknowns.force[i], &approach[i])),
             stored: self.system.stored_energy(end_force, end_local),
             motion,
-            load_work,
+            along,
+            along_work,
             local_approach: join(local, &unknowns.local, end_local),
             force: join(force, &unknowns.force, end_force),
         })
     }
 
-    /// Sweeps, each point by `law`, until the forces are right to `force_error`. Gives also the contraction of the last
-    /// sweeps.
+    /// Sweeps, each point by `law`, until the forces are right to `force_error`; `coupling` has the approaches lost per force, contacts (0,0),
+    /// (0,1), (1,0), (1,1). Gives also the contraction of the last sweeps.
     #[inline(always)]
     fn sweep(
         &self,
-        table: &StepTable,
+        [own0, by_inner, by_outer, own1]: [&[f64x4; STAGES]; 4],
         free: &[f64x4; 2],
         local: [Stages; 2],
         max_sweeps: usize,
@@ -187,13 +192,12 @@ impl<'a> StepSolver<'a> {
         mut law: impl PointLaw,
     ) -> Option<(Unknowns, f64)> {
         let mut force = [[0.0; STAGES]; 2];
-        let [own0, mutual, own1] = &table.coupling;
         // the approaches under the newest forces
         let [mut y0, mut y1] = *free;
         for j in 0..STAGES {
             let f = law.begin(j, [local[0][j], local[1][j]]);
-            y0 -= own0[j] * f[0] + mutual[j] * f[1];
-            y1 -= mutual[j] * f[0] + own1[j] * f[1];
+            y0 -= own0[j] * f[0] + by_inner[j] * f[1];
+            y1 -= by_outer[j] * f[0] + own1[j] * f[1];
             [force[0][j], force[1][j]] = f;
         }
         let mut unknowns = Unknowns { approach: *free, local, force };
@@ -211,8 +215,8 @@ impl<'a> StepSolver<'a> {
                 };
                 let (d, f) = law.visit(visit)?;
                 let step = [f[0] - visit.force[0], f[1] - visit.force[1]];
-                y0 -= own0[j] * step[0] + mutual[j] * step[1];
-                y1 -= mutual[j] * step[0] + own1[j] * step[1];
+                y0 -= own0[j] * step[0] + by_inner[j] * step[1];
+                y1 -= by_outer[j] * step[0] + own1[j] * step[1];
                 for i in 0..2 {
                     changes[i] = changes[i].max(step[i].abs());
                     largest = largest.max(f[i]);

@@ -1,8 +1,10 @@
 //! Friction's effect on the motion across the surfaces: forces along them that are known from a run before, and turn or bend what is struck.
 //!
-//! The forces depend on the motion across the surfaces, and that on them. Each is solved in turn over the whole impact, with the course of the
-//! other from the run before, until nothing changes (waveform relaxation: Lelarasmee, Ruehli and Sangiovanni-Vincentelli, IEEE Trans. CAD 1
-//! (1982) 131). In a step they are polynomials through the nodes, as the contact forces are, and the oscillators answer exactly.
+//! The forces along the surfaces depend on those across them, and these on the motion that both cause. Each is solved in turn over the whole
+//! impact, with the course of the other from the run before, until nothing changes (waveform relaxation: Lelarasmee, Ruehli and
+//! Sangiovanni-Vincentelli, IEEE Trans. CAD 1 (1982) 131). What a run takes over is the share of the force across that acts along the surface:
+//! of a contact that slides it is the coefficient of friction, whatever the force comes to, so that one round is enough. With forces taken
+//! over themselves rounds diverge where friction excites modes more than the contact force does.
 
 use super::batch::OscillatorBatch;
 use super::collocation::Collocation;
@@ -11,69 +13,34 @@ use super::system::dot;
 use crate::numerics::stages::{STAGES, Stages};
 use wide::f64x4;
 
-/// Forces along the surfaces over time, and the oscillators that they move.
+/// Forces along the surfaces over those across them in the course of an impact, and the oscillators that they move.
 #[derive(Debug, Clone)]
 pub struct FrictionLoad {
-    /// By time.
-    pub course: Vec<LoadPoint>,
+    /// Times in s, ascending, and the ratio of the forces on what is struck then, along x over across, at outer and inner contact.
+    pub course: Vec<(f64, [f64; 2])>,
     /// Displacement along x of the surfaces at both contacts per unit of each oscillator's coordinate. Shape (n).
     pub along: Vec<[f64; 2]>,
 }
 
-/// What forces along x do to what is struck, at outer and inner contact.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct LoadPoint {
-    /// In s.
-    pub time: f64,
-    /// Impulses until then, N s.
-    pub impulse: [f64; 2],
-    /// Forces then, N.
-    pub force: [f64; 2],
-}
-
 impl FrictionLoad {
-    /// Impulses in N s until `time` s, and the forces in N then: a cubic polynomial between the points of the course.
-    fn at(&self, time: f64) -> [[f64; 2]; 2] {
-        let after = self.course.partition_point(|point| point.time <= time);
-        let (Some(from), Some(to)) = (after.checked_sub(1).map(|k| self.course[k]), self.course.get(after))
-        else {
-            return [self.course.last().map_or([0.0; 2], |last| last.impulse), [0.0; 2]];
-        };
-        let length = to.time - from.time;
-        let u = (time - from.time) / length;
-        let polynomial = |i: usize| {
-            let [start, end] = [from.force[i], to.force[i]];
-            let mean = (to.impulse[i] - from.impulse[i]) / length;
-            // of the force: its ends, and the mean in between
-            let bent = 3.0 * (2.0 * mean - start - end);
-            let force = start + u * (end - start + bent * (1.0 - u));
-            let impulse = start + u * (0.5 * (end - start + bent) - u * bent / 3.0);
-            [from.impulse[i] + length * u * impulse, force]
-        };
-        let [outer, inner] = [polynomial(0), polynomial(1)];
-        [[outer[0], inner[0]], [outer[1], inner[1]]]
+    /// The ratios at `time` s.
+    fn at(&self, time: f64) -> [f64; 2] {
+        let after = self.course.partition_point(|(at, _)| *at <= time);
+        match (after.checked_sub(1).map(|before| self.course[before]), self.course.get(after)) {
+            (Some((from, start)), Some((to, end))) => {
+                let share = (time - from) / (to - from);
+                [0, 1].map(|i| start[i] + share * (end[i] - start[i]))
+            }
+            (Some((_, last)), None) => last,
+            (None, _) => [0.0; 2],
+        }
     }
 
-    /// What acts in the step of `h` s from `time` s on: values at the nodes, of which the polynomials have the impulse of the course.
-    pub(super) fn step(&self, collocation: &Collocation, time: f64, h: f64) -> StepLoad {
-        let [from, to] = [time, time + h].map(|time| self.at(time)[0]);
-        let at_nodes = collocation.nodes.map(|node| self.at(time + node * h)[1]);
-        let forces = [0, 1].map(|i| {
-            let forces = at_nodes.map(|forces| forces[i]);
-            let missing = (to[i] - from[i]) / h - dot(&collocation.weights, &forces);
-            forces.map(|force| force + missing)
-        });
-        StepLoad { forces, impulse: [0, 1].map(|i| to[i] - from[i]) }
+    /// The ratios at the nodes of the step of `h` s from `time` s on. Shape (contacts, STAGES).
+    pub(super) fn step(&self, collocation: &Collocation, time: f64, h: f64) -> [Stages; 2] {
+        let at_nodes = collocation.nodes.map(|node| self.at(time + node * h));
+        [0, 1].map(|i| at_nodes.map(|ratios| ratios[i]))
     }
-}
-
-/// Forces along the surfaces in a step.
-#[derive(Debug, Clone, Copy)]
-pub struct StepLoad {
-    /// At the nodes, N. Shape (contacts, STAGES).
-    pub forces: [Stages; 2],
-    /// Of the step, N s.
-    pub impulse: [f64; 2],
 }
 
 /// What a load has done in a run.
@@ -86,9 +53,9 @@ pub(super) struct GivenLoad {
 }
 
 impl GivenLoad {
-    /// Books a step of the `load` with its work in J.
-    pub(super) fn book(&mut self, load: &StepLoad, work: f64) {
-        (0..2).for_each(|i| self.impulse[i] += load.impulse[i]);
+    /// Books a step of `h` s with the `forces` along x at the nodes in N and their work in J.
+    pub(super) fn book(&mut self, collocation: &Collocation, h: f64, forces: &[Stages; 2], work: f64) {
+        (0..2).for_each(|i| self.impulse[i] += h * dot(&collocation.weights, &forces[i]));
         self.work += work;
     }
 }
@@ -113,12 +80,20 @@ impl LoadTable {
         Self { across: [[ax, ay], [bx, by]], along: [[xx, xy], [xy, yy]] }
     }
 
-    /// What a load with the `forces` at the nodes in N adds to the approaches there, m.
-    pub(super) fn approach(&self, forces: &[Stages; 2]) -> [f64x4; 2] {
-        self.across.each_ref().map(|[outer, inner]| under(outer, &forces[0]) + under(inner, &forces[1]))
+    /// The `coupling` of a step table if forces along the surfaces are `ratios` of those across them: approaches lost per force, contacts (0,0),
+    /// (0,1), (1,0), (1,1).
+    pub(super) fn coupling(
+        &self,
+        [own0, mutual, own1]: &[[f64x4; STAGES]; 3],
+        ratios: &[Stages; 2],
+    ) -> [[f64x4; STAGES]; 4] {
+        let less = |of: &[f64x4; STAGES], i: usize, j: usize| {
+            std::array::from_fn(|l| of[l] - self.across[i][j][l] * ratios[j][l])
+        };
+        [less(own0, 0, 0), less(mutual, 0, 1), less(mutual, 1, 0), less(own1, 1, 1)]
     }
 
-    /// The same of the displacements along x of the surfaces, under `contacts` N across them also.
+    /// What `forces` along the surfaces and `contacts` across them, at the nodes in N, add to the displacements along x there, m.
     pub(super) fn along(&self, forces: &[Stages; 2], contacts: &[Stages; 2]) -> [f64x4; 2] {
         std::array::from_fn(|j| {
             let [outer, inner] = &self.along[j];

@@ -10,7 +10,7 @@ use super::contact_forces::{Course, ForceError, StepSolver};
 use super::driver::{self, Stepper};
 use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
-use super::friction_load::{GivenLoad, StepLoad};
+use super::friction_load::GivenLoad;
 use super::heating;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::recorder::Recorder;
@@ -132,7 +132,7 @@ impl<'a> DryStepper<'a> {
         };
         if let Some(recorder) = &mut self.recorder {
             let n = system.size();
-            recorder.step(self.time, flight, [&q[..n], &v[..n]], &[[0.0; STAGES]; 2], None)?;
+            recorder.step(self.time, flight, [&q[..n], &v[..n]], &[[0.0; STAGES]; 2], &[[0.0; STAGES]; 2])?;
         }
         self.add_heat(flight, &[0.0; STAGES]);
         free_flight::advance(
@@ -178,13 +178,13 @@ impl<'a> DryStepper<'a> {
                 None => self.tables.get(batch, collocation, self.length.level(), h),
             };
             let h = table.h;
-            let load = system.friction_load.as_ref().map(|load| load.step(collocation, self.time, h));
+            let ratios = system.friction_load.as_ref().map(|load| load.step(collocation, self.time, h));
             let trial = self.solver.solve(
                 table,
                 &self.course,
                 (&self.q, &self.v),
                 (&mut self.next_q, &mut self.next_v),
-                load.as_ref(),
+                ratios.as_ref(),
                 ForceError {
                     absolute: least.map(|least| {
                         let peak = CONVERGED * share * self.bounds.force_defect * least;
@@ -216,7 +216,7 @@ impl<'a> DryStepper<'a> {
                 contact.add_defect(defect);
             }
             self.energy.book(energy_error);
-            self.accept(trial, load)?;
+            self.accept(trial)?;
             if shorter.is_none() {
                 self.length.lengthen(excess);
             }
@@ -261,15 +261,15 @@ impl<'a> DryStepper<'a> {
         if self.damped {
             stored - trial.work[0] - trial.work[1]
         } else {
-            stored + trial.motion - self.course.motion - trial.load_work
+            stored + trial.motion - self.course.motion - trial.along_work
         }
     }
 
-    fn accept(&mut self, trial: Course, load: Option<StepLoad>) -> Result<()> {
+    fn accept(&mut self, trial: Course) -> Result<()> {
         if let Some(recorder) = &mut self.recorder {
             let n = self.solver.system.size();
             let state = [&flat(&self.q)[..n], &flat(&self.v)[..n]];
-            recorder.step(self.time, trial.h, state, &trial.stages(), load.as_ref())?;
+            recorder.step(self.time, trial.h, state, &trial.stages(), &trial.along)?;
         }
         for (i, contact) in self.contacts.iter_mut().enumerate() {
             let course = StepCourse {
@@ -281,10 +281,8 @@ impl<'a> DryStepper<'a> {
             };
             contact.book(self.solver.collocation, &course);
         }
-        self.add_peaks(&trial, load.as_ref());
-        if let Some(load) = load {
-            self.given.book(&load, trial.load_work);
-        }
+        self.add_peaks(&trial);
+        self.given.book(self.solver.collocation, trial.h, &trial.along, trial.along_work);
         self.add_heat(trial.h, &trial.stages()[0]);
         std::mem::swap(&mut self.q, &mut self.next_q);
         std::mem::swap(&mut self.v, &mut self.next_v);
@@ -303,13 +301,13 @@ impl<'a> DryStepper<'a> {
     }
 
     /// Books the largest forces of the step from the present state to the next.
-    fn add_peaks(&mut self, trial: &Course, load: Option<&StepLoad>) {
+    fn add_peaks(&mut self, trial: &Course) {
         let StepSolver { system, collocation, batch, .. } = &self.solver;
         let h = trial.h;
         let forces = || trial.stages().map(|stages| collocation.derivatives(&stages, h));
         let local = |approach: [f64; 2]| [0, 1].map(|i| approach[i] - system.gap[i]);
-        let loads = load.map(|load| load.forces.map(|stages| collocation.derivatives(&stages, h)));
-        let pushed = |t: f64| loads.as_ref().map(|loads| batch.pushed_after(loads, t));
+        let along = trial.along.map(|stages| collocation.derivatives(&stages, h));
+        let pushed = |t: f64| system.friction_load.as_ref().map(|_| batch.pushed_after(&along, t));
         let motion = |place: f64| {
             let mut motion = batch.approach_after((&self.q, &self.v), &forces(), place * h);
             if let Some(pushed) = pushed(place * h) {

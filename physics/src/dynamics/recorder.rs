@@ -1,7 +1,6 @@
 //! Sampling of the course over time; a run that is not asked for its history has no recorder.
 
 use super::collocation::{Collocation, POINTS};
-use super::friction_load::{FrictionLoad, StepLoad};
 use super::integration::Options;
 use super::system::{System, dot};
 use crate::error::Result;
@@ -73,7 +72,7 @@ impl<'a, const P: usize> Recorder<'a, P> {
         Some(recorder)
     }
 
-    /// Samples the step of length `h` that starts at `time` in the state (q, v) under `forces` at the nodes, and a `load` along the surfaces.
+    /// Samples the step of length `h` that starts at `time` in the state (q, v) under `forces` at the nodes, and those `along` the surfaces.
     ///
     /// # Errors
     /// As the contact's system of equations.
@@ -83,19 +82,19 @@ impl<'a, const P: usize> Recorder<'a, P> {
         h: f64,
         [q, v]: [&[f64]; 2],
         forces: &[Stages; 2],
-        load: Option<&StepLoad>,
+        along: &[Stages; 2],
     ) -> Result<()> {
         if self.forces_alone {
             self.step_of_forces(time, h, forces);
             return Ok(());
         }
         let [b0, b1] = &self.system.approach;
-        let load = load.zip(self.system.friction_load.as_ref());
+        let load = self.system.friction_load.as_ref();
         self.step_under(time, h, q, v, forces[0], |k| {
             std::array::from_fn(|l| {
                 let across = -(b0[k] * forces[0][l] + b1[k] * forces[1][l]);
-                load.map_or(across, |(load, FrictionLoad { along, .. })| {
-                    across + along[k][0] * load.forces[0][l] + along[k][1] * load.forces[1][l]
+                load.map_or(across, |load| {
+                    across + load.along[k][0] * along[0][l] + load.along[k][1] * along[1][l]
                 })
             })
         })

@@ -4,7 +4,6 @@
 //! [`super::friction_load`].
 //! Bodies, modes of what is struck and the contacts' tangential flexibility take part.
 
-use super::friction_load::LoadPoint;
 use super::surface_modes::{MovingSurfaces, SurfaceMode};
 use crate::contact::{Press, TangentialContact};
 
@@ -65,8 +64,8 @@ pub struct Slid {
     pub dissipated: [f64; 2],
     /// Impulses in N s along x on the bodies by forces across surfaces that turn.
     pub tilted: [f64; 2],
-    /// Forces and impulses on the struck body by time.
-    pub course: Vec<LoadPoint>,
+    /// Times in s, and the forces on the struck body along the surface over those across it, by outer and inner body.
+    pub course: Vec<(f64, [f64; 2])>,
     /// Largest velocity in m/s at which the forces along the surfaces move a contact across them.
     pub across: f64,
     /// Estimated error of the velocities along the surfaces, over the speed; 0 if it was not looked for.
@@ -79,7 +78,7 @@ impl Sliding<'_> {
     /// Moves the bodies while they are pressed together as `presses` has it at every `time` in s, in `finer` times as many steps as seem enough.
     /// With fewer not every sample counts. Shapes (samples), (contacts, samples).
     pub fn slide(mut self, time: &[f64], presses: &[Vec<Press>; 2], finer: f64) -> Slid {
-        let mut slid = Slid { course: vec![LoadPoint::default()], finer, ..Slid::default() };
+        let mut slid = Slid { course: vec![(0.0, [0.0; 2])], finer, ..Slid::default() };
         let mut velocity = self.velocity;
         let mut surfaces = MovingSurfaces::new(self.modes);
         let mut earlier = self.forces();
@@ -127,7 +126,10 @@ impl Sliding<'_> {
                 slid.across = slid.across.max(surfaces.speed_across());
                 (0..2).for_each(|i| slid.impulse[i] += 0.5 * h * (before[i] + after[i]));
             }
-            slid.course.push(LoadPoint { time: time[end], impulse: slid.impulse, force: self.forces() });
+            let (forces, mut ratios) = (self.forces(), slid.course[slid.course.len() - 1].1);
+            // between two contacts the ratio stays as it was
+            (0..2).filter(|i| to[*i].force > 0.0).for_each(|i| ratios[i] = forces[i] / to[i].force);
+            slid.course.push((time[end], ratios));
         }
         for (i, contact) in self.contacts.iter().enumerate() {
             slid.dissipated[i] = contact.as_ref().map_or(0.0, TangentialContact::dissipated);

@@ -2,7 +2,7 @@
 
 use super::batch::{Block, OscillatorBatch, pushed};
 use super::collocation::Collocation;
-use super::friction_load::{LoadTable, StepLoad};
+use super::friction_load::LoadTable;
 use super::system::dot;
 use crate::numerics::duhamel::MOMENTS;
 use crate::numerics::stages::{STAGES, Stages, powers};
@@ -208,15 +208,16 @@ impl StepTable {
         (sums, 0.5 * energy.reduce_add())
     }
 
-    /// Adds what the `load` does to the state at the end of the step; gives what it adds to the approaches, and the energy of all then in J.
-    pub fn advance_under(
+    /// Adds what `forces` along the surfaces do to the state at the end of the step; gives what they add to the approaches, and the energy of
+    /// all then in J.
+    pub fn advance_along(
         &self,
         batch: &OscillatorBatch,
-        load: &StepLoad,
+        forces: &[Stages; 2],
         (q_end, v_end): (&mut [f64x4], &mut [f64x4]),
     ) -> ([f64; 2], f64) {
         let n = q_end.len();
-        let polynomial = load.forces.map(|forces| self.coefficients.map(|row| dot(&row, &forces)));
+        let polynomial = forces.each_ref().map(|forces| self.coefficients.map(|row| dot(&row, forces)));
         let (mut sums, mut energy) = ([f64x4::ZERO; 2], f64x4::ZERO);
         for (k, (block, along)) in batch.blocks.iter().zip(&batch.along).enumerate() {
             let moments = std::array::from_fn(|p| self.oscillators[(2 * STAGES + p) * n + k]);

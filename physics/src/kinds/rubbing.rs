@@ -107,7 +107,8 @@ pub(super) struct Rubbed {
     pub(super) dissipated: Option<[f64; 2]>,
     /// See [`Slid::across`], over the speed of the outer body across what it strikes.
     across: f64,
-    /// See [`Settled`](crate::dynamics::integration::Settled); `None` where the models omit it.
+    /// Whether the model omits that velocity's effect; else the error of it, see [`Settled`](crate::dynamics::integration::Settled).
+    omitted: bool,
     unsettled: Option<f64>,
     /// See [`Slid::error`].
     error: f64,
@@ -118,19 +119,15 @@ pub(super) struct Rubbed {
 impl Rubbed {
     /// What the user has to know of the motion across the surfaces that friction causes.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let across = (self.across > NOTABLE_ACROSS && self.unsettled.is_none()).then(|| {
+        let across = (self.across > NOTABLE_ACROSS && self.omitted).then(|| {
             format!(
                 "friction bends or turns what is struck, which the model omits: forces and efficiency may be wrong by about {:.1} % (normal velocity that friction gives the contacts, over that of the outer body)",
                 100.0 * self.across
             )
         });
         let unsettled = self.unsettled.filter(|error| *error > settled::SETTLED).map(|error| {
-            let how = match error.is_finite() {
-                true => format!("uncertain by {error:.0e}"),
-                false => "not reliable".into(),
-            };
             format!(
-                "friction bends or turns what is struck, and the normal and tangential forces have not converged: velocities and force peaks are {how}"
+                "friction bends or turns what is struck, and the normal and tangential forces have not converged: velocities and force peaks are uncertain by {error:.0e}"
             )
         });
         let error = (self.error > SETTLED).then(|| {
@@ -267,7 +264,8 @@ impl Rubbing {
             },
             dissipated: self.has_friction().then_some(slid.dissipated),
             across: slid.across / self.outer.normal_speed(),
-            unsettled: result.friction.as_ref().map(|friction| friction.error),
+            omitted: result.friction.as_ref().is_none_or(|friction| friction.diverged),
+            unsettled: result.friction.as_ref().filter(|friction| !friction.diverged).map(|friction| friction.error),
             error: slid.error,
             aside: self.speed_aside(result)? / self.outer.speed,
         }))

@@ -13,12 +13,13 @@ use crate::error::Result;
 const NEGLIGIBLE_ACROSS: f64 = 1e-4;
 /// Error of velocities, over the speed, and force peaks, relative, that is in order.
 pub(in crate::kinds) const SETTLED: f64 = 1e-4;
-/// Rounds at most.
-const MOST_ROUNDS: usize = 12;
+/// Rounds at most; two are enough where they converge at all.
+const MOST_ROUNDS: usize = 6;
 
 impl Rubbing {
     /// The impact of `system` that `run` finds, with friction's effect on the motion across the surfaces if there is one, and the contact
-    /// forces as its history, or the one that the `options` request.
+    /// forces as its history, or the one that the `options` request. Where the rounds diverge, because friction excites vibrations of what
+    /// is struck, that effect is left out.
     ///
     /// # Errors
     /// As `run` and [`Rubbing::solve`].
@@ -34,31 +35,41 @@ impl Rubbing {
         };
         let with_forces = self.keeping_forces(system, &Options { sample_interval: None, ..*options });
         let smooth = run(system, &with_forces)?;
-        let mut slid = self.slide(&smooth)?;
+        let slid = self.slide(&smooth)?;
         // friction changes little: steps that are right without it are right with it
         let converged = smooth.converged.or(options.converged);
         let (once, error_estimate) = (Options { converged, ..with_forces }, smooth.error_estimate);
         let load = FrictionLoad { course: Vec::new(), along: participations(system, modes) };
         let mut loaded = System { friction_load: Some(load), ..system.clone() };
-        let (mut found, mut error, mut change_before) = (smooth, 0.0_f64, f64::NAN);
-        if slid.across > NEGLIGIBLE_ACROSS * system.speed {
+        let omitted = slid.across / system.speed;
+        let mut settled = Settled { error: 0.0, slid: slid.clone(), diverged: false };
+        let (mut found, mut last) = (None, system);
+        if omitted > NEGLIGIBLE_ACROSS {
+            let mut change_before = f64::NAN;
             for _ in 0..MOST_ROUNDS {
-                let (next, change) = self.loaded(&mut loaded, (&found, &slid), &once, &run)?;
+                let before = found.as_ref().unwrap_or(&smooth);
+                let (next, change) = self.loaded(&mut loaded, (before, &settled.slid), &once, &run)?;
                 // each round leaves the same share of the change before
-                let share = if change == 0.0 { 0.0 } else { change / change_before };
-                error = if share < 1.0 { change * share / (1.0 - share) } else { f64::INFINITY };
-                slid = Slid { error: slid.error, ..self.slide_in_steps(&next, slid.finer)? };
-                (found, change_before) = (next, change);
-                if error <= 0.5 * SETTLED {
+                let share = change / change_before;
+                settled.error = if share < 1.0 { change * share / (1.0 - share) } else { change };
+                settled.diverged = share >= 1.0 && change > SETTLED;
+                settled.slid = Slid { error: slid.error, ..self.slide_in_steps(&next, slid.finer)? };
+                (found, change_before) = (Some(next), change);
+                if settled.error <= SETTLED || share >= 1.0 {
                     break;
                 }
             }
+            last = &loaded;
         }
+        if settled.diverged {
+            settled = Settled { error: omitted, slid, diverged: true };
+            (found, last) = (None, system);
+        }
+        let mut found = found.unwrap_or(smooth);
         if *options != with_forces {
-            let last = if change_before.is_nan() { system } else { &loaded };
             found = run(last, &Options { converged, ..*options })?;
         }
-        Ok(Integration { friction: Some(Settled { error, slid }), converged, error_estimate, ..found })
+        Ok(Integration { friction: Some(settled), converged, error_estimate, ..found })
     }
 
     /// The impact of the `loaded` system under the load of the round before, in which friction did `slid` and which came to `found`; with the
