@@ -2,6 +2,7 @@
 
 mod settled;
 
+use crate::body::continuum::ModesAlong;
 use crate::contact::{Hertz, Press, TangentialContact};
 use crate::dynamics::StopReason;
 use crate::dynamics::integration::{Integration, Options};
@@ -11,6 +12,7 @@ use crate::dynamics::system::System;
 use crate::error::{Error, Result};
 use crate::kinds::impacts::SAMPLES_PER_CONTACT;
 use crate::material::Material;
+use crate::numerics::duhamel::Oscillator;
 use crate::result::Sideways;
 use crate::scene::{Inner, Outer, Plate, Shape, Turning};
 use std::borrow::Cow;
@@ -43,23 +45,28 @@ pub(super) enum StruckSurface {
 
 impl StruckSurface {
     /// Of a plate in `system`, struck at `offset` m from its centre, that moves `along` itself in more modes than those of the system.
-    pub(super) fn plate(plate: &Plate, offset: f64, system: &System, along: Vec<SurfaceMode>) -> Self {
-        let mut rigid = along;
+    pub(super) fn plate(plate: &Plate, offset: f64, system: &System, along: &ModesAlong) -> Self {
+        let mode = |(&omega, &along): (&f64, &[f64; 2])| SurfaceMode {
+            oscillator: Oscillator { omega, alpha: plate.damping_ratio * omega },
+            approach: [0.0; 2],
+            along,
+        };
+        let mut further: Vec<SurfaceMode> = along.omega.iter().zip(&along.along).map(mode).collect();
         if plate.edge == crate::scene::Edge::Free {
             let (mass, arm) = (plate.mass(), 0.5 * plate.thickness);
             let inertia = mass * (0.25 * plate.radius.powi(2) + arm * arm / 3.0);
             let (push, turn) = (mass.sqrt().recip(), inertia.sqrt().recip());
             // along x, and about y: the outer face moves towards +x
-            rigid.push(SurfaceMode::rigid([0.0; 2], [push; 2]));
+            further.push(SurfaceMode::rigid([0.0; 2], [push; 2]));
             let along = [arm * turn, -arm * turn];
-            rigid.push(SurfaceMode::rigid([-offset * turn, 0.0], along));
+            further.push(SurfaceMode::rigid([-offset * turn, 0.0], along));
         }
-        Self::elastic(rigid, system)
+        Self::elastic(further, system)
     }
 
-    /// Of an elastic body in `system` with these `rigid` motions.
-    pub(super) fn elastic(rigid: Vec<SurfaceMode>, system: &System) -> Self {
-        Self::Moving(surface_modes(rigid, &system.along, system))
+    /// Of an elastic body in `system` with these `further` motions.
+    pub(super) fn elastic(further: Vec<SurfaceMode>, system: &System) -> Self {
+        Self::Moving(surface_modes(further, &system.along, system))
     }
 
     /// Whether it moves by itself.
@@ -73,9 +80,9 @@ impl StruckSurface {
     }
 }
 
-/// `rigid` motions and the elastic modes of `system`, which move the surfaces at both contacts by `along` per unit.
+/// `further` motions and the elastic modes of `system`, which move the surfaces at both contacts by `along` per unit.
 pub(super) fn surface_modes(
-    rigid: Vec<SurfaceMode>,
+    further: Vec<SurfaceMode>,
     along: &[[f64; 2]],
     system: &System,
 ) -> Vec<SurfaceMode> {
@@ -84,7 +91,7 @@ pub(super) fn surface_modes(
         approach: [system.approach[0][k], system.approach[1][k]],
         along: *along,
     });
-    rigid.into_iter().chain(elastic).collect()
+    further.into_iter().chain(elastic).collect()
 }
 
 /// Bodies, and what they touch.

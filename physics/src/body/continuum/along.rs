@@ -24,7 +24,8 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{ColRef, Mat, Side};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// Radius of the patch that is pushed, over the thickness; what a plate gives way beyond a half-space hardly depends on it.
+/// Radius of the patch that is pushed, over the thickness. What a plate gives way beyond a half-space hardly depends on it, and wide contacts
+/// come no nearer to finite elements with their own patch.
 const PATCH: f64 = 0.1;
 /// Ritz vectors of each parity.
 const VECTORS: usize = 6;
@@ -46,7 +47,11 @@ impl ModesAlong {
     /// # Errors
     /// [`Error::Solver`] if the plate is too thin for double precision, or the numerics fail.
     pub fn new(plate: &Plate, options: &MeshOptions) -> Result<Self> {
-        let patch = PATCH * plate.thickness;
+        Self::pushed_over(PATCH * plate.thickness, plate, options)
+    }
+
+    /// The same with a force over a patch of the radius `patch` m.
+    fn pushed_over(patch: f64, plate: &Plate, options: &MeshOptions) -> Result<Self> {
         let mesh = plate_mesh(plate, Some(patch), 1, options);
         // half of it in each parity
         let local = 0.5 * half_space_flexibility_along(&plate.material, patch);
@@ -62,14 +67,6 @@ impl ModesAlong {
             }
         }
         Ok(found)
-    }
-
-    /// Static flexibility of each face along itself under a force there, and between the faces, m/N.
-    pub fn flexibility(&self) -> [f64; 2] {
-        let sum = |i: usize| {
-            self.omega.iter().zip(&self.along).map(|(omega, along)| along[0] * along[i] / omega.powi(2)).sum()
-        };
-        [sum(0), sum(1)]
     }
 }
 
@@ -230,6 +227,9 @@ fn element(nodes: &[[f64; 2]], quadrature: &[QuadraturePoint], material: &Materi
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::kirchhoff::UnitPlate;
+    use crate::body::kirchhoff::UnitPlates;
+    use crate::body::off_centre;
     use approx::assert_relative_eq;
 
     fn plate(edge: Edge, thickness: f64) -> Plate {
@@ -237,19 +237,76 @@ mod tests {
         Plate { radius: 16e-3, thickness, edge, material, damping_ratio: 0.0 }
     }
 
+    fn flexibilities(modes: &ModesAlong) -> [f64; 2] {
+        let sum = |i: usize| {
+            let each = modes.omega.iter().zip(&modes.along);
+            each.map(|(omega, along)| along[0] * along[i] / omega.powi(2)).sum()
+        };
+        [sum(0), sum(1)]
+    }
+
+    /// Leissa, table 2.1, and Leissa & Narita, J. Sound Vib. 70 (1980) 221: squares of the wave numbers with one nodal diameter.
     #[test]
-    fn zz() {
-        for thickness in [0.16e-3, 0.5e-3, 2e-3, 4e-3, 8e-3] {
-            let plate = plate(Edge::Clamped, thickness);
-            let t = std::time::Instant::now();
-            let found = ModesAlong::new(&plate, &MeshOptions::default()).unwrap();
-            let e = t.elapsed();
-            let fine = ModesAlong::new(&plate, &MeshOptions::default().refined(2.0)).unwrap();
-            println!("{thickness} {e:?} {:?} {:?} local {:e}", found.flexibility(), fine.flexibility(), half_space_flexibility_along(&plate.material, PATCH * thickness));
-            println!("{:?}\n{:?}", found.omega, found.along);
-            let plates = crate::body::kirchhoff::UnitPlates::default();
-            for n in [1, 2, 3, 4, 6, 8] { let unit = plates.unit(plate.edge, 0.3, n, 1).unwrap(); let body = unit.scale(&plate); let slopes = unit.slopes(&plate, &[0.0]);
-              let f: f64 = body.omega.iter().zip(&slopes).map(|(o, s)| (0.5 * thickness * s[0] / o).powi(2)).sum(); println!("  kirchhoff {n} {f:e} {:?}", body.omega.last()); }
+    fn thin_plates_have_leissa_s_frequencies_with_one_nodal_diameter() {
+        for (edge, table) in [(Edge::Clamped, [21.26, 60.82]), (Edge::SimplySupported, [13.898, 48.479])] {
+            let plate = plate(edge, 0.08e-3);
+            let found = ModesAlong::new(&plate, &MeshOptions::default()).expect("modes");
+            let unit = UnitPlate::new(edge, 0.3, 1).expect("a mode").frequency(&plate);
+            for (omega, expected) in found.omega.iter().zip(table) {
+                assert_relative_eq!(omega / unit, expected, max_relative = 1e-3);
+            }
+            // bending moves the faces against each other
+            assert!(found.along.iter().take(2).all(|[outer, inner]| *outer == -inner));
         }
+    }
+
+    /// In their own plane both faces of a thin plate move together, as in plane stress: a disc of the radius R, held at its rim, gives way to
+    /// forces over circles of the radii a and b by (3 - nu)(1 + nu)/(8 pi E t) 2 ln(b/a) less under the wider one, if both are small
+    /// (Muskhelishvili 1953, section 57: Kelvin's solution).
+    #[test]
+    fn a_thin_plate_gives_way_in_its_plane_as_in_plane_stress() {
+        let plate = plate(Edge::Clamped, 0.1e-3);
+        let together = |patch: f64| {
+            let mesh = plate_mesh(&plate, Some(patch), 1, &MeshOptions::default());
+            let half = HalfPlate::new(&plate, &mesh, patch, true).expect("a plate");
+            let (omega, along) = half.ritz().expect("modes");
+            omega.iter().zip(along).map(|(omega, along)| (along / omega).powi(2)).sum::<f64>()
+        };
+        // many thicknesses, few of the radius
+        let found = together(0.5e-3) - together(1.5e-3);
+        let nu = plate.material.poisson_ratio;
+        let unit = (3.0 - nu) * (1.0 + nu) / (4.0 * PI * plate.material.youngs_modulus * plate.thickness);
+        // on the upper face half of the force acts on the lower half: it moves alike
+        assert_relative_eq!(found, unit * 3.0_f64.ln(), max_relative = 0.02);
+    }
+
+    /// Neither a finer mesh nor a smaller patch changes what the plate gives way beyond a half-space; it may be a tenth of that.
+    #[test]
+    fn the_flexibility_beyond_a_half_space_depends_on_neither_mesh_nor_patch() {
+        for thickness in [0.5e-3, 2e-3] {
+            let plate = plate(Edge::Clamped, thickness);
+            let mesh = MeshOptions::default();
+            let found = flexibilities(&ModesAlong::new(&plate, &mesh).expect("modes"));
+            let finer = ModesAlong::new(&plate, &mesh.refined(2.0)).expect("modes");
+            let smaller = ModesAlong::pushed_over(0.05 * thickness, &plate, &mesh).expect("modes");
+            for other in [finer, smaller].map(|modes| flexibilities(&modes)) {
+                (0..2).for_each(|i| assert_relative_eq!(found[i], other[i], max_relative = 0.02));
+            }
+        }
+    }
+
+    /// The long waves that models A and B take give way against each other about as the continuum does; of a thick plate nothing is left.
+    #[test]
+    fn kirchhoff_s_long_waves_turn_the_normal_as_much() {
+        for thickness in [0.25e-3, 0.5e-3, 1e-3, 2e-3] {
+            let plate = plate(Edge::Clamped, thickness);
+            let found = ModesAlong::new(&plate, &MeshOptions::default()).expect("modes");
+            let thin = off_centre::modes_along(&plate, &UnitPlates::default()).expect("modes");
+            let [own, mutual] = flexibilities(&found);
+            let [bending, _] = flexibilities(&thin);
+            assert_relative_eq!(bending, 0.5 * (own - mutual), max_relative = 0.15);
+        }
+        let thick = ModesAlong::new(&plate(Edge::Clamped, 8e-3), &MeshOptions::default()).expect("modes");
+        assert!(thick.omega.is_empty());
     }
 }

@@ -39,6 +39,14 @@ pub fn plate_in(
     })
 }
 
+/// [`ModesAlong::new`] through the user's cache.
+///
+/// # Errors
+/// As [`ModesAlong::new`].
+pub fn modes_along(plate: &Plate, mesh: &MeshOptions) -> Result<ModesAlong> {
+    modes_along_in(&Cache::from_environment(), plate, mesh)
+}
+
 /// [`ModesAlong::new`] through `cache`.
 ///
 /// # Errors

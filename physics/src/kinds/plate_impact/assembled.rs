@@ -6,19 +6,17 @@ use super::predictor::Predictor;
 use super::shared::SharedBodies;
 use super::validity;
 use crate::body::ModalBody;
-use crate::body::continuum::{ContinuumPlate, MeshOptions, cached};
+use crate::body::continuum::{ContinuumPlate, MeshOptions, ModesAlong, cached};
 use crate::body::kirchhoff::UnitPlates;
 use crate::body::off_centre::{self, OffCentreModes};
 use crate::dynamics::MovingBody;
 use crate::dynamics::memory::{Bending, Memory};
-use crate::dynamics::surface_modes::SurfaceMode;
 use crate::dynamics::system::{PLATE, System};
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
 use crate::fluid::added_mass::{immersed, mass_factor};
 use crate::kinds::general_impact::{OnOtherMesh, off_centre_plate};
 use crate::kinds::rubbing::rubs_along;
-use crate::numerics::duhamel::Oscillator;
 use crate::scene::DEFAULT_MODES;
 use crate::scene::{Edge, Material, Model, Shape};
 
@@ -132,25 +130,15 @@ pub(super) fn kirchhoff(setup: &PlateImpact, modes: usize, plates: &UnitPlates) 
 
 /// Modes of `model` by which the faces of the plate of `setup` move along themselves alone; none where nothing moves them so, and of a
 /// free plate.
-pub(super) fn modes_along(
-    setup: &PlateImpact,
-    model: Model,
-    bodies: &SharedBodies,
-) -> Result<Vec<SurfaceMode>> {
+pub(super) fn modes_along(setup: &PlateImpact, model: Model, bodies: &SharedBodies) -> Result<ModesAlong> {
     let PlateImpact { outer, inner, plate, .. } = setup;
     if outer.offset != 0.0 || plate.edge == Edge::Free || !rubs_along(outer, Some(inner)) {
-        return Ok(Vec::new());
+        return Ok(ModesAlong::default());
     }
-    let modes = match model {
-        Model::A | Model::B => off_centre::modes_along(plate, &bodies.kirchhoff)?,
-        Model::C => bodies.continua().modes_along(plate)?,
-    };
-    let mode = |(&omega, &along): (&f64, &[f64; 2])| SurfaceMode {
-        oscillator: Oscillator { omega, alpha: plate.damping_ratio * omega },
-        approach: [0.0; 2],
-        along,
-    };
-    Ok(modes.omega.iter().zip(&modes.along).map(mode).collect())
+    match model {
+        Model::A | Model::B => off_centre::modes_along(plate, &bodies.kirchhoff),
+        Model::C => bodies.continua().modes_along(plate),
+    }
 }
 
 /// Models A and B of a `plate` that is reduced to modes; `shapes` as [`FluidForces::new`] takes them.

@@ -9,9 +9,9 @@ use super::results::PlateQuantities;
 use super::shared::SharedBodies;
 use super::{MAX_MODES, PlateImpact};
 use crate::body::cache::Cache;
+use crate::body::continuum::ModesAlong;
 use crate::dynamics::memory::Memory;
 use crate::dynamics::sliding::Tilt;
-use crate::dynamics::surface_modes::SurfaceMode;
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
@@ -46,7 +46,7 @@ pub struct Reduced {
 }
 
 /// The bodies of `setup` that move along its plate in `system`, if they do; the plate also moves `along` itself.
-fn rubbing(setup: &PlateImpact, system: &System, along: Vec<SurfaceMode>) -> Option<Rubbing> {
+fn rubbing(setup: &PlateImpact, system: &System, along: &ModesAlong) -> Option<Rubbing> {
     let PlateImpact { outer, inner, plate, .. } = setup;
     let masses = [outer.shape.mass(&outer.material), inner.shape.mass(&inner.material)];
     moves_along(outer, Some(inner)).then(|| Rubbing {
@@ -136,7 +136,7 @@ impl Reduced {
             system.first_frequency = memory.frequency(system.first_frequency);
         }
         let along = modes_along(scene.plate_impact()?, model, bodies)?;
-        let rubbing = rubbing(scene.plate_impact()?, &system, along);
+        let rubbing = rubbing(scene.plate_impact()?, &system, &along);
         Ok(Self {
             model,
             system,

@@ -1,11 +1,13 @@
 //! What the bodies do along their surfaces, from the contact forces of the model.
 
 use super::ContactModel;
+use crate::body::continuum::{MeshOptions, ModesAlong, cached};
 use crate::dynamics::integration::Integration;
 use crate::error::Result;
 use crate::kinds::general_impact::{GeneralImpact, Struck};
-use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, Touching};
+use crate::kinds::rubbing::{Rubbed, Rubbing, StruckSurface, Touching, rubs_along};
 use crate::result::Table;
+use crate::scene::Edge;
 
 impl ContactModel {
     /// The same with the efficiency of all motion: what the inner body has along the surfaces counts.
@@ -25,16 +27,23 @@ impl ContactModel {
     pub(super) fn rubbing(&self) -> Result<Option<Rubbing>> {
         let scene = self.scene.general_impact()?;
         let GeneralImpact { outer, inner, struck, .. } = scene;
+        let relaxes = !self.faces[0].relaxation.is_empty();
         let surface = match struck {
             Some(Struck::Body(_)) => {
                 let rigid = self.between.as_ref().map_or_else(Vec::new, |between| between.rigid.clone());
                 StruckSurface::elastic(rigid, &self.system)
             }
-            Some(Struck::Plate(plate)) => StruckSurface::plate(plate, 0.0, &self.system, Vec::new()),
+            Some(Struck::Plate(plate)) => {
+                let rubs = rubs_along(outer, inner.as_ref()) && !relaxes && plate.edge != Edge::Free;
+                let along = match rubs {
+                    true => cached::modes_along(plate, &MeshOptions::default())?,
+                    false => ModesAlong::default(),
+                };
+                StruckSurface::plate(plate, 0.0, &self.system, &along)
+            }
             Some(Struck::Wall(_)) => StruckSurface::Moving(Vec::new()),
             None => StruckSurface::OtherBody,
         };
-        let relaxes = !self.faces[0].relaxation.is_empty();
         if !scene.moves_along() || surface.vibrates() && relaxes {
             return Ok(None);
         }
