@@ -352,3 +352,49 @@ inner = { kind = "sphere", radius = "2 mm", material = "steel" }
     assert!(summary.value("outer_force_peak").is_some_and(|peak| peak > 0.0));
     assert!(summary.energy_residual.is_some_and(|residual| residual < 1e-6));
 }
+
+/// Off-centre friction acts back on the contact forces: exactly in every step, so that a coarse tolerance moves neither velocities nor force
+/// peaks.
+#[test]
+fn friction_off_centre_keeps_the_tolerance_of_time() {
+    let text = include_str!("../../scenes/validation/off-centre-oblique.toml");
+    let scene = Scene::parse("scene.toml", text).expect("valid");
+    let model = kinds::of(&scene).model(&scene, Model::B, None).expect("model");
+    let [coarse, fine] = [1e-4, 1e-9].map(|tolerance| model.run(tolerance).expect("run"));
+    for name in ["outer_force_peak", "inner_force_peak", "outer_velocity_final", "inner_velocity_final"] {
+        let [coarse, fine] = [&coarse, &fine].map(|summary| summary.value(name).expect("a value"));
+        assert_relative_eq!(coarse, fine, max_relative = 1e-5);
+    }
+    for (summary, bound) in [(coarse, 1e-6), (fine, 1e-10)] {
+        assert!(summary.energy_residual.is_some_and(|residual| residual < bound), "{summary:?}");
+    }
+}
+
+/// Friction that excites the plate's vibrations ever more: the rounds of normal and tangential motion come near before they diverge. The
+/// result is the nearest, with a warning that has its error, and other tolerances find the same within it.
+#[test]
+fn friction_that_excites_vibrations_states_its_error() {
+    let scene = Scene::parse(
+        "test.toml",
+        r#"
+name = "test"
+kind = "plate-impact"
+friction = 0.121441
+materials.plate = { youngs_modulus = 4.1412e9, poisson_ratio = 0.321607, density = 3050.16 }
+materials.bodies = { youngs_modulus = 20.3638e9, poisson_ratio = 0.181258, density = 1510.5 }
+plate = { radius = "8 mm", thickness = "1 mm", edge = "clamped", material = "plate" }
+outer = { kind = "sphere", radius = 29.3133e-3, material = "bodies", speed = 54.4162e-3, angle = 0.836842, offset = 2.35322e-3 }
+inner = { kind = "sphere", radius = 31.7775e-3, material = "bodies" }
+"#,
+    );
+    let scene = scene.expect("valid");
+    let model = kinds::of(&scene).model(&scene, Model::B, None).expect("model");
+    let found = [1e-3, 1e-5, 1e-7].map(|tolerance| model.run(tolerance).expect("run"));
+    let warned = |summary: &&Summary| summary.warnings.iter().any(|text| text.contains("have not converged"));
+    assert!(found.iter().filter(warned).count() > 0);
+    for name in ["outer_force_peak", "inner_force_peak", "outer_velocity_final", "inner_velocity_final"] {
+        let values = found.each_ref().map(|summary| summary.value(name).expect("a value"));
+        assert_relative_eq!(values[0], values[1], max_relative = 1.5e-2);
+        assert_relative_eq!(values[2], values[1], max_relative = 1.5e-2);
+    }
+}

@@ -96,7 +96,8 @@ impl TangentialContact {
 
     /// Strain energy by the motion along the surface, J.
     pub fn stored(&self) -> f64 {
-        let elastic = || 0.5 * self.deflections.iter().map(|[along, _]| (*along * *along).reduce_add()).sum::<f64>();
+        let elastic =
+            || 0.5 * self.deflections.iter().map(|[along, _]| (*along * *along).reduce_add()).sum::<f64>();
         self.spring_stiffness() * self.creeping.as_ref().map_or_else(elastic, CreepingSprings::stored)
     }
 
@@ -142,8 +143,9 @@ impl TangentialContact {
         let reached = (f64x4::splat(press.radius) - place) * (press.radius - before.radius).recip();
         let parted = |press: &Press| match self.beta {
             0.0 => f64x4::ZERO,
-            beta => f64x4::from(place.to_array().map(|place| parted(beta, place, press.radius)))
-                * press.curvature,
+            beta => {
+                f64x4::from(place.to_array().map(|place| parted(beta, place, press.radius))) * press.curvature
+            }
         };
         let within = |value: f64x4| inside.select(value, f64x4::ZERO);
         SpringStep {

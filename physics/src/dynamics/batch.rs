@@ -88,9 +88,8 @@ impl OscillatorBatch {
             feed,
         });
         let along = system.friction_load.iter().flat_map(|load| load.along.chunks(LANES));
-        let along = along.map(|chunk| {
-            [0, 1].map(|i| filled_up(&chunk.iter().map(|along| along[i]).collect::<Vec<_>>()))
-        });
+        let along = along
+            .map(|chunk| [0, 1].map(|i| filled_up(&chunk.iter().map(|along| along[i]).collect::<Vec<_>>())));
         Self { blocks: blocks.collect(), fed: fed.collect(), along: along.collect() }
     }
 
@@ -375,6 +374,7 @@ mod tests {
     use super::*;
     use crate::body::kirchhoff;
     use crate::dynamics::MovingBody;
+    use crate::dynamics::friction_load::FrictionLoad;
     use crate::scene::Scene;
     use approx::assert_relative_eq;
 
@@ -404,6 +404,28 @@ mod tests {
                     assert_relative_eq!(*found, *expected, max_relative = 1e-9, epsilon = 1e-18);
                 }
             }
+        }
+    }
+
+    /// Forces along surfaces that move as the contacts approach are contact forces of the opposite sign.
+    #[test]
+    fn forces_along_the_surfaces_move_oscillators_as_contact_forces_do() {
+        let scene = include_str!("../../../scenes/validation/damped-plate.toml");
+        let scene = Scene::parse("scene.toml", scene).expect("valid");
+        let setup = scene.plate_impact().expect("a plate");
+        let bodies = MovingBody::both(&setup.outer, &setup.inner).expect("bodies");
+        let plate = kirchhoff::modes(&setup.plate, 16).expect("modes");
+        let mut system = System::of(&bodies, &plate, &setup.plate.material, [0.0; 2]);
+        let along = (0..system.oscillators.len()).map(|k| [system.approach[1][k], system.approach[0][k]]);
+        system.friction_load = Some(FrictionLoad { course: Vec::new(), along: along.collect() });
+        let batch = OscillatorBatch::new(&system);
+        let rest = vec![f64x4::ZERO; batch.blocks.len()];
+        let forces = [[300.0, 2e8, -1e14, 4e19], [-100.0, 5e7, 3e13, -2e19]];
+        let swapped = [forces[1], forces[0]];
+        let pressed = batch.approach_after((&rest, &rest), &forces, 3e-6);
+        let pushed = batch.pushed_after(&swapped, 3e-6);
+        for (pressed, pushed) in pressed.iter().flatten().zip(pushed.iter().flatten()) {
+            assert_relative_eq!(*pressed, -pushed, max_relative = 1e-12);
         }
     }
 

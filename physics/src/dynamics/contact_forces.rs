@@ -132,7 +132,9 @@ impl<'a> StepSolver<'a> {
         let guess = self.guess(before, table.h).unwrap_or(unforced);
         let laws = &self.system.laws;
         let solved = match self.system.residual {
-            None => self.sweep(coupling, &free, guess, MAX_SWEEPS, force_error, HertzPoints::new(laws, table)),
+            None => {
+                self.sweep(coupling, &free, guess, MAX_SWEEPS, force_error, HertzPoints::new(laws, table))
+            }
             Some(residual) => {
                 let points = |full| ResidualPoints::new(laws, residual, table, full);
                 self.sweep(coupling, &free, guess, MAX_NEWTON_SWEEPS, force_error, points(false))

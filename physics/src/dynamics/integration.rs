@@ -105,18 +105,15 @@ pub struct Integration {
     pub history: Option<History>,
     /// How outer and inner contact are pressed at the samples of the history, if asked for and not by the law of the system.
     pub presses: Option<[Vec<Press>; 2]>,
-    /// Friction's effect on the motion across the surfaces, which is in these results unless it diverged; `None` where that is omitted.
+    /// Friction's effect on the motion across the surfaces, which is in these results; `None` where that is omitted.
     pub friction: Option<Settled>,
 }
 
 /// How far the motion across the surfaces and that along them have settled.
 #[derive(Debug, Clone)]
 pub struct Settled {
-    /// Error of velocities over the impact speed and of force peaks, relative, by ending the rounds in which they were found in turn; where
-    /// these diverged, the normal velocity that friction gives the contacts.
+    /// Error of velocities over the impact speed and of force peaks, relative, by ending the rounds in which they were found in turn.
     pub error: f64,
-    /// Whether the rounds diverged: then friction's effect on the motion across the surfaces is omitted.
-    pub diverged: bool,
     /// What friction did along the surfaces.
     pub slid: Slid,
 }

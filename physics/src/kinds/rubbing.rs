@@ -114,8 +114,7 @@ pub(super) struct Rubbed {
     pub(super) dissipated: Option<[f64; 2]>,
     /// See [`Slid::across`], over the speed of the outer body across what it strikes.
     across: f64,
-    /// Whether the model omits that velocity's effect; else the error of it, see [`Settled`](crate::dynamics::integration::Settled).
-    omitted: bool,
+    /// See [`Settled`](crate::dynamics::integration::Settled); `None` where the models omit it.
     unsettled: Option<f64>,
     /// See [`Slid::error`].
     error: f64,
@@ -126,7 +125,7 @@ pub(super) struct Rubbed {
 impl Rubbed {
     /// What the user has to know of the motion across the surfaces that friction causes.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let across = (self.across > NOTABLE_ACROSS && self.omitted).then(|| {
+        let across = (self.across > NOTABLE_ACROSS && self.unsettled.is_none()).then(|| {
             format!(
                 "friction bends or turns what is struck, which the model omits: forces and efficiency may be wrong by about {:.1} % (normal velocity that friction gives the contacts, over that of the outer body)",
                 100.0 * self.across
@@ -271,8 +270,7 @@ impl Rubbing {
             },
             dissipated: self.has_friction().then_some(slid.dissipated),
             across: slid.across / self.outer.normal_speed(),
-            omitted: result.friction.as_ref().is_none_or(|friction| friction.diverged),
-            unsettled: result.friction.as_ref().filter(|friction| !friction.diverged).map(|friction| friction.error),
+            unsettled: result.friction.as_ref().map(|friction| friction.error),
             error: slid.error,
             aside: self.speed_aside(result)? / self.outer.speed,
         }))

@@ -56,7 +56,8 @@ impl ModesAlong {
         // half of it in each parity
         let local = 0.5 * half_space_flexibility_along(&plate.material, patch);
         let mut found = Self::default();
-        for together in [false, true].into_iter().filter(|together| !together || plate.edge == Edge::Clamped) {
+        for together in [false, true].into_iter().filter(|together| !together || plate.edge == Edge::Clamped)
+        {
             let half = HalfPlate::new(plate, &mesh, patch, together)?;
             let (omega, mut along) = half.ritz()?;
             take_out(local, &omega, &mut along);
@@ -119,8 +120,9 @@ impl HalfPlate {
             }
         }
         let assembled = |entries: &[Triplet<usize, usize, f64>]| {
-            SparseColMat::try_new_from_triplets(size, size, entries)
-                .map_err(|e| Error::Internal(format!("assembling a plate that is pushed along itself: {e:?}")))
+            SparseColMat::try_new_from_triplets(size, size, entries).map_err(|e| {
+                Error::Internal(format!("assembling a plate that is pushed along itself: {e:?}"))
+            })
         };
         let (stiffness, mass) = (assembled(&stiffness)?, assembled(&mass)?);
         let symbolic = SymbolicLlt::try_new(stiffness.symbolic(), Side::Lower)
@@ -159,7 +161,8 @@ impl HalfPlate {
             }
             let momentum: Vec<f64> = (&self.mass * ColRef::from_slice(&vector)).iter().copied().collect();
             let scale = dot(&vector, &momentum).sqrt().recip();
-            let scaled = |values: Vec<f64>| values.into_iter().map(|value| scale * value).collect::<Vec<f64>>();
+            let scaled =
+                |values: Vec<f64>| values.into_iter().map(|value| scale * value).collect::<Vec<f64>>();
             basis.push(scaled(vector));
             forces.push(scaled(force));
             momenta.push(scaled(momentum));
@@ -172,9 +175,8 @@ impl HalfPlate {
             .ok_or_else(|| Error::Internal("modes of a plate that is pushed along itself".into()))?;
         let moved: Vec<f64> = basis.iter().map(|vector| dot(vector, &self.load)).collect();
         // a mode of the half has twice the norm on the whole plate
-        let along = |mode: usize| {
-            FRAC_1_SQRT_2 * (0..VECTORS).map(|k| moved[k] * vectors[(k, mode)]).sum::<f64>()
-        };
+        let along =
+            |mode: usize| FRAC_1_SQRT_2 * (0..VECTORS).map(|k| moved[k] * vectors[(k, mode)]).sum::<f64>();
         Ok((squares.iter().map(|square| square.sqrt()).collect(), (0..VECTORS).map(along).collect()))
     }
 }
@@ -187,7 +189,8 @@ fn element(nodes: &[[f64; 2]], quadrature: &[QuadraturePoint], material: &Materi
     let size = COMPONENTS * nodes.len();
     let mut matrices = [Mat::zeros(size, size), Mat::zeros(size, size)];
     for point in quadrature {
-        let at = |values: &[f64], c: usize| -> f64 { values.iter().zip(nodes).map(|(v, node)| v * node[c]).sum() };
+        let at =
+            |values: &[f64], c: usize| -> f64 { values.iter().zip(nodes).map(|(v, node)| v * node[c]).sum() };
         let r = at(&point.value, 0);
         let [[r_xi, r_eta], [z_xi, z_eta]] = [0, 1].map(|c| [at(&point.d_xi, c), at(&point.d_eta, c)]);
         let determinant = r_xi * z_eta - r_eta * z_xi;

@@ -2,9 +2,7 @@
 
 mod run;
 
-use super::assembled::{
-    Assembled, RequestedModes, continuum, kirchhoff, modes_along, off_centre_continuum,
-};
+use super::assembled::{Assembled, RequestedModes, continuum, kirchhoff, modes_along, off_centre_continuum};
 use super::results::PlateQuantities;
 use super::shared::SharedBodies;
 use super::{MAX_MODES, PlateImpact};

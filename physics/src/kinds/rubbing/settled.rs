@@ -18,8 +18,8 @@ const MOST_ROUNDS: usize = 6;
 
 impl Rubbing {
     /// The impact of `system` that `run` finds, with friction's effect on the motion across the surfaces if there is one, and the contact
-    /// forces as its history, or the one that the `options` request. Where the rounds diverge, because friction excites vibrations of what
-    /// is struck, that effect is left out.
+    /// forces as its history, or the one that the `options` request. Where friction excites vibrations of what is struck more and more,
+    /// rounds diverge after they have come near: then the nearest counts.
     ///
     /// # Errors
     /// As `run` and [`Rubbing::solve`].
@@ -41,31 +41,31 @@ impl Rubbing {
         let (once, error_estimate) = (Options { converged, ..with_forces }, smooth.error_estimate);
         let load = FrictionLoad { course: Vec::new(), along: participations(system, modes) };
         let mut loaded = System { friction_load: Some(load), ..system.clone() };
-        let omitted = slid.across / system.speed;
-        let mut settled = Settled { error: 0.0, slid: slid.clone(), diverged: false };
-        let (mut found, mut last) = (None, system);
-        if omitted > NEGLIGIBLE_ACROSS {
-            let mut change_before = f64::NAN;
+        let mut settled = Settled { error: 0.0, slid };
+        let (mut found, mut last) = (smooth, system);
+        if settled.slid.across > NEGLIGIBLE_ACROSS * system.speed {
+            let mut change_before = f64::INFINITY;
+            let mut course = Vec::new();
             for _ in 0..MOST_ROUNDS {
-                let before = found.as_ref().unwrap_or(&smooth);
-                let (next, change) = self.loaded(&mut loaded, (before, &settled.slid), &once, &run)?;
+                let (next, change) = self.loaded(&mut loaded, (&found, &settled.slid), &once, &run)?;
+                if change >= change_before {
+                    settled.error = change;
+                    break;
+                }
                 // each round leaves the same share of the change before
                 let share = change / change_before;
-                settled.error = if share < 1.0 { change * share / (1.0 - share) } else { change };
-                settled.diverged = share >= 1.0 && change > SETTLED;
-                settled.slid = Slid { error: slid.error, ..self.slide_in_steps(&next, slid.finer)? };
-                (found, change_before) = (Some(next), change);
-                if settled.error <= SETTLED || share >= 1.0 {
+                settled.error = if share > 0.0 { change * share / (1.0 - share) } else { change };
+                course = std::mem::take(&mut settled.slid.course);
+                settled.slid =
+                    Slid { error: settled.slid.error, ..self.slide_in_steps(&next, settled.slid.finer)? };
+                (found, change_before) = (next, change);
+                if settled.error <= SETTLED {
                     break;
                 }
             }
+            loaded.friction_load.iter_mut().for_each(|load| load.course.clone_from(&course));
             last = &loaded;
         }
-        if settled.diverged {
-            settled = Settled { error: omitted, slid, diverged: true };
-            (found, last) = (None, system);
-        }
-        let mut found = found.unwrap_or(smooth);
         if *options != with_forces {
             found = run(last, &Options { converged, ..*options })?;
         }
