@@ -3,8 +3,8 @@
 //! The forces along the surfaces depend on those across them, and these on the motion that both cause. Each is solved in turn over the whole
 //! impact, with the course of the other from the run before, until nothing changes (waveform relaxation: Lelarasmee, Ruehli and
 //! Sangiovanni-Vincentelli, IEEE Trans. CAD 1 (1982) 131). What a run takes over is the share of the force across that acts along the surface:
-//! of a contact that slides it is the coefficient of friction, whatever the force comes to, so that one round is enough. With forces taken
-//! over themselves rounds diverge where friction excites modes more than the contact force does.
+//! of a contact that slides it is the coefficient of friction, whatever the force comes to, so that two rounds are enough. If they took over
+//! forces, they would diverge where friction excites modes more than the contact force does.
 
 use super::batch::OscillatorBatch;
 use super::collocation::Collocation;
