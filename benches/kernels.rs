@@ -75,6 +75,23 @@ fn impact(c: &mut Criterion) {
     group.bench_function("with_free_flight", |b| b.iter(|| flight.point(1e-6).expect("an impact")));
 }
 
+/// Oblique impacts with friction and without, at the centre of a plate and off it.
+fn friction(c: &mut Criterion) {
+    let mut group = c.benchmark_group("friction");
+    for (place, text) in [
+        ("centre", include_str!("../scenes/validation/oblique-friction.toml")),
+        ("off_centre", include_str!("../scenes/validation/off-centre-oblique.toml")),
+    ] {
+        for (name, text) in [("smooth", text.replace("friction ", "# ")), ("rough", text.to_owned())] {
+            let scene = Scene::parse("scene.toml", &text).expect("a valid scene");
+            let reduced = Reduced::new(&scene, Model::B, None).expect("a model");
+            group.bench_function(format!("{place}_{name}"), |b| {
+                b.iter(|| reduced.point(1e-6).expect("an impact"));
+            });
+        }
+    }
+}
+
 /// A point of a sweep: the scene's model from known modes, and its impact.
 fn sweep_point(c: &mut Criterion) {
     let (scene, plates) = (scene("", ""), SharedBodies::default());
@@ -95,6 +112,6 @@ criterion_group! {
         .sample_size(20)
         .warm_up_time(Duration::from_millis(200))
         .measurement_time(Duration::from_millis(500));
-    targets = moments, contact, plate, impact, sweep_point
+    targets = moments, contact, plate, impact, friction, sweep_point
 }
 criterion_main!(kernels);

@@ -81,8 +81,8 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
         "file": out, "fmi": fmi, "model": model, "modes": summary.modes, "variables": variables, "bytes": bytes,
     });
     arguments.json.print(&document, |_| {
-        let megabytes = bytes as f64 / 1e6;
-        format!("{}: FMI {fmi}, model {model}, {variables} variables, {megabytes:.0} MB", out.display())
+        let megabytes = bytes.div_ceil(1_000_000);
+        format!("{}: FMI {fmi}, model {model}, {variables} variables, {megabytes} MB", out.display())
     })?;
     Ok(ExitStatus::Pass)
 }
