@@ -137,7 +137,7 @@ pub(super) fn modes_along(setup: &PlateImpact, model: Model, bodies: &SharedBodi
     }
     match model {
         Model::A | Model::B => off_centre::modes_along(plate, &bodies.kirchhoff),
-        Model::C => bodies.continua().modes_along(plate),
+        Model::C => bodies.modes_along(plate),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The continuum bodies of model C: shared by the impacts of a series, from the cache, or meshed.
 
 use crate::body::cache::Cache;
-use crate::body::continuum::{ContinuumPlate, MeshOptions, ModesAlong, UnitBodies, cached};
+use crate::body::continuum::{ContinuumPlate, MeshOptions, UnitBodies, cached};
 use crate::error::Result;
 use crate::scene::{Material, Plate};
 
@@ -23,11 +23,6 @@ impl<'a> Continua<'a> {
         let shared = self.shared.map(|bodies| bodies.plate(plate, patches, modes)).transpose()?;
         let meshed = || cached::plate_in(self.cache, plate, patches, modes, &MeshOptions::default());
         shared.flatten().map_or_else(meshed, Ok)
-    }
-
-    /// As [`ModesAlong::new`] on the default mesh.
-    pub(super) fn modes_along(&self, plate: &Plate) -> Result<ModesAlong> {
-        cached::modes_along_in(self.cache, plate, &MeshOptions::default())
     }
 
     /// As [`crate::body::continuum::sphere_residual`] on the default mesh.

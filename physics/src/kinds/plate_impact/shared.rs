@@ -6,8 +6,9 @@ use super::continua::Continua;
 use super::predictor::Predictor;
 use super::reduced::Reduced;
 use crate::body::cache::Cache;
-use crate::body::continuum::{UnitBodies, Varied};
+use crate::body::continuum::{MeshOptions, ModesAlong, UnitBodies, Varied, cached};
 use crate::body::kirchhoff::UnitPlates;
+use crate::body::memo::MemoList;
 use crate::error::Result;
 use crate::kinds::{Series, SeriesModel};
 use crate::scene::DEFAULT_MODES;
@@ -18,6 +19,8 @@ use crate::scene::{Model, Plate, Scene};
 pub struct SharedBodies {
     pub(super) kirchhoff: UnitPlates,
     continuum: Option<UnitBodies>,
+    /// Plates that friction moved along their faces.
+    along: MemoList<(Plate, ModesAlong)>,
     /// Of bodies that are not shared.
     cache: Cache,
 }
@@ -60,7 +63,8 @@ impl SharedBodies {
 
     /// Every continuum on a mesh of its own, through `cache`.
     pub(super) fn meshed(cache: Cache) -> Self {
-        Self { continuum: None, kirchhoff: UnitPlates::default(), cache }
+        let (kirchhoff, along) = (UnitPlates::default(), MemoList::default());
+        Self { continuum: None, kirchhoff, along, cache }
     }
 
     /// A first look at the impact of `setup`; where bodies are scaled it may be a rough one.
@@ -70,6 +74,13 @@ impl SharedBodies {
         }
         let plate = self.kirchhoff.initial_modes(&setup.plate, DEFAULT_MODES)?;
         Predictor::rough(&join(setup, plate, [0.0; 2])?)
+    }
+
+    /// As [`ModesAlong::new`] on the default mesh, for model C.
+    pub(super) fn modes_along(&self, plate: &Plate) -> Result<ModesAlong> {
+        let make = || cached::modes_along_in(&self.cache, plate, &MeshOptions::default());
+        let found = self.along.find_or(|(of, _)| of == plate, || Ok((plate.clone(), make()?)))?;
+        Ok(found.1.clone())
     }
 
     /// The bodies of model C.
