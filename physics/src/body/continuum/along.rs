@@ -265,7 +265,7 @@ mod tests {
 
     /// In their own plane both faces of a thin plate move together, as in plane stress: a disc of the radius R, held at its rim, gives way to
     /// forces over circles of the radii a and b by (3 - nu)(1 + nu)/(8 pi E t) 2 ln(b/a) less under the wider one, if both are small
-    /// (Muskhelishvili 1953, section 57: Kelvin's solution).
+    /// (Kelvin's solution in plane stress: Timoshenko & Goodier 1970, article 42).
     #[test]
     fn a_thin_plate_gives_way_in_its_plane_as_in_plane_stress() {
         let plate = plate(Edge::Clamped, 0.1e-3);
