@@ -282,7 +282,9 @@ impl<'a> DryStepper<'a> {
             contact.book(self.solver.collocation, &course);
         }
         self.add_peaks(&trial);
-        self.given.book(self.solver.collocation, trial.h, &trial.along, trial.along_work);
+        if self.solver.system.friction_load.is_some() {
+            self.given.book(self.solver.collocation, trial.h, &trial.along, trial.along_work);
+        }
         self.add_heat(trial.h, &trial.stages()[0]);
         std::mem::swap(&mut self.q, &mut self.next_q);
         std::mem::swap(&mut self.v, &mut self.next_v);
@@ -306,8 +308,8 @@ impl<'a> DryStepper<'a> {
         let h = trial.h;
         let forces = || trial.stages().map(|stages| collocation.derivatives(&stages, h));
         let local = |approach: [f64; 2]| [0, 1].map(|i| approach[i] - system.gap[i]);
-        let along = trial.along.map(|stages| collocation.derivatives(&stages, h));
-        let pushed = |t: f64| system.friction_load.as_ref().map(|_| batch.pushed_after(&along, t));
+        let along = || trial.along.map(|stages| collocation.derivatives(&stages, h));
+        let pushed = |t: f64| system.friction_load.as_ref().map(|_| batch.pushed_after(&along(), t));
         let motion = |place: f64| {
             let mut motion = batch.approach_after((&self.q, &self.v), &forces(), place * h);
             if let Some(pushed) = pushed(place * h) {
