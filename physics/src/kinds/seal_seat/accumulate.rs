@@ -27,32 +27,6 @@ pub(super) fn deform_under<'c>(
     Arch::new().dispatch(Deform { u, part, column, push });
 }
 
-/// Adds to `u` the displacements of the nodes in `part` under a further `force` on the node of this `column`.
-pub(super) fn deform_further(u: &mut [f64], part: Range<usize>, column: Column, force: &Vector3<f64>) {
-    Arch::new().dispatch(DeformFurther { u, part, column, force });
-}
-
-/// As [`Deform`] of one force, added to what is there.
-struct DeformFurther<'a> {
-    u: &'a mut [f64],
-    part: Range<usize>,
-    column: Column<'a>,
-    force: &'a Vector3<f64>,
-}
-
-impl WithSimd for DeformFurther<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let width = self.u.len() / 3;
-        for c in 0..3 {
-            let parts = std::array::from_fn(|d| &self.column[(3 * d + c) * width..][self.part.clone()]);
-            add(&mut self.u[c * width..][self.part.clone()], parts, self.force);
-        }
-    }
-}
-
 impl<'c, C: Fn(usize) -> Column<'c>> WithSimd for Deform<'_, C> {
     type Output = ();
 

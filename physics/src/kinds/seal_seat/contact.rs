@@ -55,6 +55,8 @@ pub struct ContactProblem<'a> {
     pub(super) loads: Loads,
     /// The candidates that are looked at; all in contact are among them.
     pub(super) watch: Watch,
+    /// Number of the first slots in which the residual yields under the present forces; in the others under earlier ones.
+    pub(super) deformed: usize,
     gap: Vec<f64>,
     /// Nodes on the wrong side: in contact with a tensile force, or out of contact and too deep. Shape (n).
     pub(super) wrong: Vec<bool>,
@@ -119,6 +121,7 @@ impl<'a> ContactProblem<'a> {
                 friction,
             },
             watch: Watch::none(n),
+            deformed: 0,
             gap: vec![0.0; n],
             wrong: vec![false; n],
             in_contact: vec![false; n],
@@ -221,37 +224,34 @@ impl<'a> ContactProblem<'a> {
     /// # Errors
     /// [`Error::Solver`] if the residual is not positive definite or no solution is found.
     pub fn solve(&mut self, modal: &[f64], balls: &[Ball]) -> Result<()> {
-        match self.loads.friction {
-            Some(_) => self.solve_with_friction(modal, balls),
-            None => self.solve_normal(modal, balls),
-        }
-    }
-
-    /// Finds the normal forces, with the tangential ones as they are.
-    pub(super) fn solve_normal(&mut self, modal: &[f64], balls: &[Ball]) -> Result<()> {
-        self.work.solutions += 1;
-        self.work.watched += self.watch.len() as u64;
-        let (mut fewest, mut patience, mut last) = (usize::MAX, PATIENCE, f64::INFINITY);
         self.watch.place(modal, balls);
         if let Some(traces) = &self.loads.traces {
             self.watch.remember(self.nodes, traces.forces());
             self.watch.displace();
         }
-        // The slots in which the residual yields under the present forces: at first all, the last instant's forces still do
-        // what they did.
-        let mut known = self.watch.len();
+        match self.loads.friction {
+            Some(_) => self.solve_with_friction(balls),
+            None => self.solve_normal(balls),
+        }
+    }
+
+    /// Finds the normal forces, with the tangential ones as they are.
+    pub(super) fn solve_normal(&mut self, balls: &[Ball]) -> Result<()> {
+        self.work.solutions += 1;
+        self.work.watched += self.watch.len() as u64;
+        let (mut fewest, mut patience, mut last) = (usize::MAX, PATIENCE, f64::INFINITY);
         for iteration in 0..MOST {
-            known = self.deform_from(known, self.watch.up_to(&self.loads.active));
+            self.deform_up_to(self.watch.up_to(&self.loads.active));
             let worst = self.look_at_set(balls);
             let closed = self.loads.active.is_empty() || (worst <= 1.0 && iteration > 0);
             // A set that is sure to change is not solved to the end.
             let wrong = if closed {
-                known = self.deform_from(known, self.watch.len());
+                self.deform_up_to(self.watch.len());
                 self.mark_wrong(balls)
             } else {
                 self.fit(worst > CHORD * last)?;
                 self.correct();
-                (last, known) = (worst, 0);
+                (last, self.deformed) = (worst, 0);
                 if patience > 0 { self.mark_tensile() } else { 0 }
             };
             if wrong == 0 && closed {
@@ -264,7 +264,7 @@ impl<'a> ContactProblem<'a> {
                     patience = patience.saturating_sub(1);
                 }
                 self.exchange(patience == 0);
-                (last, known) = (f64::INFINITY, 0);
+                (last, self.deformed) = (f64::INFINITY, 0);
             }
         }
         Err(Error::Solver(format!(
@@ -274,13 +274,13 @@ impl<'a> ContactProblem<'a> {
         )))
     }
 
-    /// Lets the residual yield in the slots from `known` to `end`; how many are known then.
-    pub(super) fn deform_from(&mut self, known: usize, end: usize) -> usize {
-        if known < end {
+    /// Lets the residual yield under the present forces in the first `end` slots.
+    pub(super) fn deform_up_to(&mut self, end: usize) {
+        if self.deformed < end {
             self.collect_push();
-            self.watch.deform_under(self.nodes, &self.push, known..end);
+            self.watch.deform_under(self.nodes, &self.push, self.deformed..end);
+            self.deformed = end;
         }
-        known.max(end)
     }
 
     /// Gaps and normals of the contact set; its largest gap in magnitude or turn of a normal, over what a closed contact may
@@ -325,18 +325,26 @@ impl<'a> ContactProblem<'a> {
         }
     }
 
-    /// Changes of the forces at the contact set when its gaps change by `opening` (of candidate and normal) in m, with the
-    /// set and the last factor as they are; `each` gets candidate, normal and change in N.
+    /// Changes of the forces at the contact set when its nodes move in relation to the balls by `shift` in s^2 times the `acceleration` of a
+    /// candidate with this place from the centre of its ball, with the set and the last factor as they are; `each` gets candidate, place in m,
+    /// change of the normal force and of the whole force on the body in N.
     pub fn respond(
         &mut self,
-        opening: impl Fn(usize, Vector3<f64>) -> f64,
-        mut each: impl FnMut(usize, Vector3<f64>, f64),
+        shift: f64,
+        acceleration: impl Fn(usize, &Vector3<f64>) -> Vector3<f64>,
+        mut each: impl FnMut(usize, &Vector3<f64>, f64, Vector3<f64>),
     ) {
+        let relative = |i: usize| acceleration(i, &self.watch.off_centre(i).0);
         let normal = &self.loads.normal;
         self.step.clear();
-        self.step.extend(self.factored.iter().map(|&i| -opening(i, normal[i])));
+        self.step.extend(self.factored.iter().map(|&i| -(shift * normal[i].dot(&relative(i)))));
         self.factor.solve(&mut self.step);
-        self.factored.iter().zip(&self.step).for_each(|(&i, &change)| each(i, normal[i], change));
+        for (&i, &change) in self.factored.iter().zip(&self.step) {
+            each(i, &self.watch.off_centre(i).0, change, change * normal[i]);
+        }
+        let pressed = |i: usize| self.factored.iter().position(|&j| i == j).map_or(0.0, |k| self.step[k]);
+        let along = |i: usize, change| each(i, &self.watch.off_centre(i).0, 0.0, change);
+        self.respond_along(|i| shift * relative(i), pressed, along);
     }
 
     /// Marks the nodes that pull and the open watched ones that are too deep; their number.

@@ -7,8 +7,9 @@
 
 use super::contact::ContactProblem;
 use super::nodes::Ball;
+use super::surface::{Pass, Surface};
 use crate::error::{Error, Result};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 /// Relative change of the tangential forces by a pass over all nodes at which they have settled, over the run's tolerance.
 const SETTLED: f64 = 0.1;
@@ -36,6 +37,8 @@ pub(super) struct Friction {
     turn: Vec<f64>,
     /// Work of the friction on all bodies so far in J, not positive.
     work: f64,
+    /// The nodes in contact at the latest solution.
+    surface: Surface,
 }
 
 impl Friction {
@@ -50,6 +53,7 @@ impl Friction {
             offset: vec![Vector3::zeros(); n],
             turn: vec![0.0; balls],
             work: 0.0,
+            surface: Surface::default(),
         }
     }
 
@@ -70,33 +74,14 @@ impl Friction {
     }
 }
 
-/// What a pass over the nodes has brought.
-struct Pass {
-    /// Change of the tangential forces, summed over the nodes, N.
-    changed: f64,
-    /// Their sum, N.
-    held: f64,
-}
-
-/// A node in contact, while its tangential force is sought.
-struct ContactNode {
-    candidate: usize,
-    normal: Vector3<f64>,
-    /// Largest tangential force in N.
-    most: f64,
-    /// Turn of its ball since the instant before, rad.
-    turned: f64,
-    /// Largest displacement along the surface per force along it, m/N.
-    compliance: f64,
-}
-
 impl ContactProblem<'_> {
     /// Finds normal and tangential forces in turn, until another turn would change these by no more than they may.
-    pub(super) fn solve_with_friction(&mut self, modal: &[f64], balls: &[Ball]) -> Result<()> {
+    pub(super) fn solve_with_friction(&mut self, balls: &[Ball]) -> Result<()> {
         self.extrapolate();
         for _ in 0..MOST_TURNS {
-            self.solve_normal(modal, balls)?;
+            self.solve_normal(balls)?;
             if self.solve_tangential(balls)? {
+                self.deform_up_to(self.watch.len());
                 return Ok(());
             }
         }
@@ -109,7 +94,7 @@ impl ContactProblem<'_> {
         for &i in &self.loads.active {
             friction.force[i] += friction.trend[i];
         }
-        self.deform_from(0, self.watch.len());
+        self.deformed = 0;
     }
 
     fn not_settled(&self, rounds: usize) -> Error {
@@ -121,61 +106,51 @@ impl ContactProblem<'_> {
 
     /// Finds the tangential forces under the present normal forces; whether these fit them.
     fn solve_tangential(&mut self, balls: &[Ball]) -> Result<bool> {
+        if self.loads.active.is_empty() {
+            return Ok(true);
+        }
         let Some(mut friction) = self.loads.friction.take() else { return Ok(true) };
-        let nodes = self.nodes_in_contact(&friction, balls);
         let before = friction.force.clone();
+        friction.surface.follow(&self.loads.active, &self.loads.normal, &mut self.watch, self.nodes);
+        let mut nodes = friction.surface.sliding(|i| {
+            let (offset, ball) = self.watch.off_centre(i);
+            let turned = balls[ball].turn - friction.turn[ball];
+            let slip = friction.slip(i, offset, self.loads.normal[i], turned);
+            (friction.force[i], slip, friction.coefficient * self.loads.force[i].max(0.0))
+        });
         let pressed: f64 = self.loads.active.iter().map(|&i| self.loads.force[i]).sum();
-        let mut settles = |_: &usize| {
-            let Pass { changed, held } = self.pass_over(&nodes, &mut friction);
-            changed <= friction.tolerance * SETTLED * held.max(LEAST * pressed)
+        let settled = |pass: Pass| {
+            pass.changed <= friction.tolerance * SETTLED * pass.held.max(LEAST * pressed)
         };
-        let passes = (1..=MOST_PASSES).find(&mut settles);
+        let passes = (1..=MOST_PASSES).find(|_| settled(friction.surface.pass(&mut nodes)));
+        for (i, force) in friction.surface.forces(&nodes) {
+            friction.force[i] = force;
+        }
         let changes = friction.force.iter().zip(&before).map(|(now, before)| (now - before).norm());
         let change: f64 = changes.sum();
         let held: f64 = friction.force.iter().map(|force| force.norm()).sum();
         let fits = COUPLING * change <= friction.tolerance * held.max(LEAST * pressed);
         self.loads.friction = Some(friction);
-        self.deform_from(0, self.watch.len());
+        self.deformed = 0;
         self.work.passes += passes.ok_or_else(|| self.not_settled(MOST_PASSES))? as u64;
         Ok(fits)
     }
 
-    /// Lets each of `nodes` stick or slide, in turn.
-    fn pass_over(&mut self, nodes: &[ContactNode], friction: &mut Friction) -> Pass {
-        let part = 0..self.watch.up_to(&self.loads.active);
-        let (mut changed, mut held) = (0.0, 0.0);
-        for node in nodes {
-            let (i, normal) = (node.candidate, node.normal);
-            let slip = friction.slip(i, self.watch.off_centre(i).0, normal, node.turned);
-            let old = friction.force[i];
-            let wanted = old - normal.dot(&old) * normal - slip / node.compliance;
-            let size = wanted.norm();
-            let new = if size > node.most { wanted * (node.most / size) } else { wanted };
-            friction.force[i] = new;
-            changed += (new - old).norm();
-            held += new.norm();
-            self.watch.deform_further(self.nodes, (i, new - old), part.clone());
-        }
-        Pass { changed, held }
-    }
-
-    /// The nodes in contact; one that has just touched has slid since the instant before.
-    fn nodes_in_contact(&mut self, friction: &Friction, balls: &[Ball]) -> Vec<ContactNode> {
-        let mut nodes = Vec::with_capacity(self.loads.active.len());
-        for &i in &self.loads.active {
-            let normal = self.loads.normal[i];
-            let compliance = self.watch.own_compliance(self.nodes, i);
-            let across = Matrix3::identity() - normal * normal.transpose();
-            let ball = self.nodes.ball[i];
-            nodes.push(ContactNode {
-                candidate: i,
-                normal,
-                most: friction.coefficient * self.loads.force[i].max(0.0),
-                turned: balls[ball].turn - friction.turn[ball],
-                compliance: (across * compliance * across).symmetric_eigenvalues().max(),
-            });
-        }
-        nodes
+    /// Changes in N of the tangential forces, where there are any, when the nodes in contact move by `moved` (of a candidate) in m in relation
+    /// to the balls and the normal forces change by `pressed` in N.
+    pub(super) fn respond_along(
+        &self,
+        moved: impl Fn(usize) -> Vector3<f64>,
+        pressed: impl Fn(usize) -> f64,
+        mut each: impl FnMut(usize, Vector3<f64>),
+    ) {
+        let Some(friction) = self.loads.friction.as_ref().filter(|_| !self.loads.active.is_empty()) else { return };
+        let normal = &self.loads.force;
+        let mut nodes = friction.surface.sliding(|i| (friction.force[i], moved(i), friction.coefficient * normal[i]));
+        friction.surface.respond(&mut nodes, |i| {
+            if normal[i] > 0.0 { (1.0 + pressed(i) / normal[i]).max(0.0) } else { 1.0 }
+        });
+        friction.surface.forces(&nodes).for_each(|(i, force)| each(i, force - friction.force[i]));
     }
 
     /// Ends an instant whose forces have been found: books the work of friction since the one before.

@@ -23,6 +23,7 @@ mod results;
 mod scene;
 mod series;
 mod shape;
+mod surface;
 mod survey;
 pub mod system;
 pub mod traces;

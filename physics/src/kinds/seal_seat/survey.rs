@@ -74,7 +74,8 @@ impl ContactProblem<'_> {
             self.chosen.sort_by(|a, b| self.surveyed[*a].total_cmp(&self.surveyed[*b]));
             self.watch.choose(self.nodes, &self.chosen);
         }
-        self.watch.deform_under(self.nodes, &self.push, 0..self.watch.len());
+        self.deformed = 0;
+        self.deform_up_to(self.watch.len());
         if let Some(traces) = &self.loads.traces {
             self.watch.remember(self.nodes, traces.forces());
         }

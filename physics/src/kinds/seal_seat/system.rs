@@ -245,17 +245,25 @@ impl<'a> Workspace<'a> {
         accelerations.clone_from(&forces.modal);
         let [x, z] = forces.sphere.map(|f| f / system.sphere_mass);
         let actuator = forces.actuator / system.actuator_mass;
-        let opening = |i: usize, normal: Vector3<f64>| {
+        let turn = forces.torque / system.sphere_inertia;
+        let relative = |i: usize, from_centre: &Vector3<f64>| {
             let mut a = match system.candidates[i].contact_body {
-                ContactBody::Sphere => Vector3::new(-x, 0.0, -z),
+                ContactBody::Sphere => {
+                    Vector3::new(-x, 0.0, -z) - turn * Vector3::new(from_centre.z, 0.0, -from_centre.x)
+                }
                 ContactBody::Tip(_) => Vector3::new(0.0, 0.0, -actuator),
             };
             for (q, shape) in accelerations.iter().zip(&system.participation) {
                 a.iter_mut().zip(&shape[3 * i..]).for_each(|(a, s)| *a += q * s);
             }
-            shift * normal.dot(&a)
+            a
         };
-        contact.respond(opening, |i, normal, change| forces.add(system, i, change * normal, change));
+        contact.respond(shift, relative, |i, from_centre, normal, change| {
+            forces.add(system, i, change, normal);
+            if system.friction > 0.0 && system.candidates[i].contact_body == ContactBody::Sphere {
+                forces.torque += from_centre.x * change.z - from_centre.z * change.x;
+            }
+        });
     }
 
     /// Looks at all candidates at `state`, whose forces have been evaluated: see [`ContactProblem::survey`].

@@ -1,9 +1,9 @@
 //! The candidates that are watched, side by side in memory.
 
-use super::accumulate::{add_modes, deform_further, deform_under};
+use super::accumulate::{add_modes, deform_under};
 use super::nodes::{Ball, Nodes};
 use super::traces::Push;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use std::ops::Range;
 
 /// Slot of a candidate that is not watched, and number of a column that has not been gathered.
@@ -133,21 +133,6 @@ impl Watch {
         let (size, columns) = (9 * self.len(), &self.columns);
         let column = |j: usize| &columns[self.gathered[j] * size..][..size];
         deform_under(&mut self.deformation, part, column, push);
-    }
-
-    /// Lets the residual yield further in the slots `part` under another force in N.
-    pub fn deform_further(&mut self, nodes: &Nodes, push: Push, part: Range<usize>) {
-        self.gather(nodes, push.0);
-        let column = &self.columns[self.gathered[push.0] * 9 * self.len()..][..9 * self.len()];
-        deform_further(&mut self.deformation, part, column, &push.1);
-    }
-
-    /// Displacements in m of the watched candidate `i` under unit forces in N on itself. Shape (displacement, force).
-    pub fn own_compliance(&mut self, nodes: &Nodes, i: usize) -> Matrix3<f64> {
-        self.gather(nodes, i);
-        let (w, slot) = (self.len(), self.slot[i]);
-        let column = &self.columns[self.gathered[i] * 9 * w..][..9 * w];
-        Matrix3::from_fn(|c, d| f64::from(column[(3 * d + c) * w + slot]))
     }
 
     /// Lets the residual yield under `forces` in N of the past.

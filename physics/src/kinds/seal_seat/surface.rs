@@ -1,0 +1,207 @@
+//! How the nodes in contact yield along the surfaces of the balls, each in two directions, and passes over them.
+
+use super::nodes::Nodes;
+use super::watch::Watch;
+use nalgebra::Vector3;
+use pulp::{Arch, Simd, WithSimd};
+
+/// Turn of a normal in rad up to which the compliance is taken as that of the normal before. It only says how forces change: a compliance
+/// that is off by so much slows the iteration, and does not change what it converges to.
+const TURN: f64 = 2e-3;
+/// Tangential force over the largest one from which on a node slides.
+const SLIDING: f64 = 1.0 - 1e-6;
+/// Passes over the nodes that stick for their part of a correction: more change nothing that counts.
+const RESPONSE_PASSES: usize = 3;
+
+/// The nodes in contact, with two directions along the surface each.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Surface {
+    nodes: Vec<usize>,
+    /// Normals at the nodes when the compliance was made. Shape (n).
+    normal: Vec<Vector3<f64>>,
+    /// Directions across the present normals. Shape (n, 2).
+    axes: Vec<[Vector3<f64>; 2]>,
+    /// Displacements in m/N of all nodes along both directions under unit forces on one along each. Shape (n of the force, 2, 2, n).
+    compliance: Vec<f64>,
+    /// Largest displacement of a node per force on itself, m/N. Shape (n).
+    own: Vec<f64>,
+}
+
+/// Nodes that stick or slide, by the directions of a [`Surface`].
+#[derive(Debug, Clone, Default)]
+pub(super) struct Sliding {
+    /// Tangential forces in N. Shape (2, n).
+    force: Vec<f64>,
+    /// Motion in m over the ball's surface. Shape (2, n).
+    slip: Vec<f64>,
+    /// Largest tangential forces in N. Shape (n).
+    most: Vec<f64>,
+}
+
+impl Sliding {
+    /// Of `n` nodes without forces.
+    fn of(n: usize) -> Self {
+        Self { force: vec![0.0; 2 * n], slip: vec![0.0; 2 * n], most: vec![0.0; n] }
+    }
+
+    /// Tangential force in N on the node in this `place`.
+    fn at(&self, place: usize) -> [f64; 2] {
+        [self.force[place], self.force[self.most.len() + place]]
+    }
+
+    /// Changes that force by `change` in N, and all slips by what the `columns` of the node's compliance say.
+    #[inline(always)]
+    fn push(&mut self, place: usize, change: [f64; 2], columns: &[f64]) {
+        let n = self.most.len();
+        self.force[place] += change[0];
+        self.force[n + place] += change[1];
+        let (first, second) = columns.split_at(2 * n);
+        for ((slip, first), second) in self.slip.iter_mut().zip(first).zip(second) {
+            *slip += change[0] * first + change[1] * second;
+        }
+    }
+}
+
+/// What a pass over the nodes has brought.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Pass {
+    /// Change of the tangential forces, summed over the nodes, N.
+    pub(super) changed: f64,
+    /// Their sum, N.
+    pub(super) held: f64,
+}
+
+impl Surface {
+    /// Takes the nodes `active` with the normals `normal` of all candidates.
+    pub(super) fn follow(
+        &mut self,
+        active: &[usize],
+        normal: &[Vector3<f64>],
+        watch: &mut Watch,
+        nodes: &Nodes,
+    ) {
+        let turned = |(i, before): (&usize, &Vector3<f64>)| (normal[*i] - before).amax() > TURN;
+        if self.nodes != active || self.nodes.iter().zip(&self.normal).any(turned) {
+            self.nodes.clear();
+            self.nodes.extend_from_slice(active);
+            self.normal.clear();
+            self.normal.extend(active.iter().map(|&i| normal[i]));
+            self.axes.clear();
+            self.axes.extend(self.normal.iter().map(across));
+            self.fill(watch, nodes);
+        } else {
+            for (axes, &i) in self.axes.iter_mut().zip(active) {
+                axes[0] = (axes[0] - normal[i].dot(&axes[0]) * normal[i]).normalize();
+                axes[1] = normal[i].cross(&axes[0]);
+            }
+        }
+    }
+
+    /// Makes the compliance.
+    fn fill(&mut self, watch: &mut Watch, nodes: &Nodes) {
+        let n = self.nodes.len();
+        self.compliance.clear();
+        self.compliance.reserve(4 * n * n);
+        self.own.clear();
+        for (b, &j) in self.nodes.iter().enumerate() {
+            for direction in self.axes[b] {
+                watch.under(nodes, j, direction);
+                for c in 0..2 {
+                    let along = self.nodes.iter().zip(&self.axes).map(|(&i, axes)| watch.compliance(i, axes[c]));
+                    self.compliance.extend(along);
+                }
+            }
+            let entry = |d: usize, c: usize| self.compliance[((2 * b + d) * 2 + c) * n + b];
+            let (mean, half) = (0.5 * (entry(0, 0) + entry(1, 1)), 0.5 * (entry(0, 0) - entry(1, 1)));
+            self.own.push(mean + half.hypot(entry(0, 1)));
+        }
+    }
+
+    /// The nodes with what `of` gives for each candidate: force in N, motion in m over the ball's surface, largest tangential force in N.
+    pub(super) fn sliding(&self, of: impl Fn(usize) -> (Vector3<f64>, Vector3<f64>, f64)) -> Sliding {
+        let n = self.nodes.len();
+        let mut nodes = Sliding::of(n);
+        for (place, (&i, axes)) in self.nodes.iter().zip(&self.axes).enumerate() {
+            let (force, slip, most) = of(i);
+            for c in 0..2 {
+                nodes.force[c * n + place] = axes[c].dot(&force);
+                nodes.slip[c * n + place] = axes[c].dot(&slip);
+            }
+            nodes.most[place] = most;
+        }
+        nodes
+    }
+
+    /// The forces in N on `nodes`, with the candidates.
+    pub(super) fn forces(&self, nodes: &Sliding) -> impl Iterator<Item = (usize, Vector3<f64>)> {
+        self.nodes.iter().zip(&self.axes).enumerate().map(|(place, (&i, axes))| {
+            let [first, second] = nodes.at(place);
+            (i, first * axes[0] + second * axes[1])
+        })
+    }
+
+    /// Lets each node stick or slide, in turn.
+    pub(super) fn pass(&self, nodes: &mut Sliding) -> Pass {
+        Arch::new().dispatch(GaussSeidel { surface: self, nodes })
+    }
+
+    /// Changes the forces as far as small slips and other normal forces do, `pressed` times those before: what slides goes on sliding the
+    /// same way, what sticks yields.
+    pub(super) fn respond(&self, nodes: &mut Sliding, pressed: impl Fn(usize) -> f64) {
+        let size = 4 * self.nodes.len();
+        let column = |place: usize| &self.compliance[place * size..][..size];
+        let mut sticking = Vec::with_capacity(self.nodes.len());
+        for (place, &i) in self.nodes.iter().enumerate() {
+            let [first, second] = nodes.at(place);
+            if first.hypot(second) < SLIDING * nodes.most[place] {
+                sticking.push(place);
+            } else {
+                let more = pressed(i) - 1.0;
+                nodes.push(place, [more * first, more * second], column(place));
+            }
+        }
+        for _ in 0..RESPONSE_PASSES {
+            for &place in &sticking {
+                let slip = [nodes.slip[place], nodes.slip[self.nodes.len() + place]];
+                nodes.push(place, slip.map(|slip| -slip / self.own[place]), column(place));
+            }
+        }
+    }
+}
+
+/// Two directions across `normal` and each other.
+fn across(normal: &Vector3<f64>) -> [Vector3<f64>; 2] {
+    let mut least = Vector3::zeros();
+    least[normal.iamin()] = 1.0;
+    let first = normal.cross(&least).normalize();
+    [first, normal.cross(&first)]
+}
+
+/// A pass.
+struct GaussSeidel<'a> {
+    surface: &'a Surface,
+    nodes: &'a mut Sliding,
+}
+
+impl WithSimd for GaussSeidel<'_> {
+    type Output = Pass;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Pass {
+        let Self { surface: Surface { compliance, own, .. }, nodes } = self;
+        let n = own.len();
+        let mut pass = Pass::default();
+        for (place, columns) in compliance.chunks_exact(4 * n).enumerate() {
+            let old = nodes.at(place);
+            let wanted = [0, 1].map(|c| old[c] - nodes.slip[c * n + place] / own[place]);
+            let size = (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt();
+            let most = nodes.most[place];
+            let share = if size > most { most / size } else { 1.0 };
+            let change = [0, 1].map(|c| share * wanted[c] - old[c]);
+            pass.changed += (change[0] * change[0] + change[1] * change[1]).sqrt();
+            pass.held += share * size;
+            nodes.push(place, change, columns);
+        }
+        pass
+    }
+}
