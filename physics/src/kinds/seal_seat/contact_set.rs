@@ -29,12 +29,13 @@ impl ContactProblem<'_> {
             }
         }
         self.factored.iter().for_each(|&i| self.wrong[i] = false);
+        let end = self.watch.up_to(&self.loads.active);
         for a in 0..self.loads.active.len() {
             let i = self.loads.active[a];
             if self.wrong[i] {
                 self.factored.push(i);
                 self.factor_normal[i] = self.loads.normal[i];
-                self.watch.under(self.nodes, i, self.factor_normal[i]);
+                self.watch.under(self.nodes, i, self.factor_normal[i], end);
                 let (factored, normal, watch) = (&self.factored, &self.factor_normal, &self.watch);
                 if !self.factor.append(|b| watch.compliance(factored[b], normal[factored[b]])) {
                     return self.factorise();
@@ -50,11 +51,12 @@ impl ContactProblem<'_> {
         for &i in &self.factored {
             self.factor_normal[i] = self.loads.normal[i];
         }
+        let end = self.watch.up_to(&self.factored);
         let (active, normal, watch) = (&self.factored, &self.factor_normal, &mut self.watch);
         let entry = |a: usize, b: usize| {
             // the first entry of a column
             if a == b {
-                watch.under(self.nodes, active[b], normal[active[b]]);
+                watch.under(self.nodes, active[b], normal[active[b]], end);
             }
             watch.compliance(active[a], normal[active[a]])
         };

@@ -7,7 +7,7 @@
 
 use super::contact::ContactProblem;
 use super::nodes::Ball;
-use super::surface::{Pass, Surface};
+use super::surface::Pass;
 use crate::error::{Error, Result};
 use nalgebra::Vector3;
 
@@ -37,8 +37,6 @@ pub(super) struct Friction {
     turn: Vec<f64>,
     /// Work of the friction on all bodies so far in J, not positive.
     work: f64,
-    /// The nodes in contact at the latest solution.
-    surface: Surface,
 }
 
 impl Friction {
@@ -53,7 +51,6 @@ impl Friction {
             offset: vec![Vector3::zeros(); n],
             turn: vec![0.0; balls],
             work: 0.0,
-            surface: Surface::default(),
         }
     }
 
@@ -111,8 +108,8 @@ impl ContactProblem<'_> {
         }
         let Some(mut friction) = self.loads.friction.take() else { return Ok(true) };
         let before = friction.force.clone();
-        friction.surface.follow(&self.loads.active, &self.loads.normal, &mut self.watch, self.nodes);
-        let mut nodes = friction.surface.sliding(|i| {
+        self.surface.follow(&self.loads.active, &self.loads.normal, &mut self.watch, self.nodes);
+        let mut nodes = self.surface.sliding(|i| {
             let (offset, ball) = self.watch.off_centre(i);
             let turned = balls[ball].turn - friction.turn[ball];
             let slip = friction.slip(i, offset, self.loads.normal[i], turned);
@@ -122,8 +119,8 @@ impl ContactProblem<'_> {
         let settled = |pass: Pass| {
             pass.changed <= friction.tolerance * SETTLED * pass.held.max(LEAST * pressed)
         };
-        let passes = (1..=MOST_PASSES).find(|_| settled(friction.surface.pass(&mut nodes)));
-        for (i, force) in friction.surface.forces(&nodes) {
+        let passes = (1..=MOST_PASSES).find(|_| settled(self.surface.pass(&mut nodes)));
+        for (i, force) in self.surface.forces(&nodes) {
             friction.force[i] = force;
         }
         let changes = friction.force.iter().zip(&before).map(|(now, before)| (now - before).norm());
@@ -146,11 +143,11 @@ impl ContactProblem<'_> {
     ) {
         let Some(friction) = self.loads.friction.as_ref().filter(|_| !self.loads.active.is_empty()) else { return };
         let normal = &self.loads.force;
-        let mut nodes = friction.surface.sliding(|i| (friction.force[i], moved(i), friction.coefficient * normal[i]));
-        friction.surface.respond(&mut nodes, |i| {
+        let mut nodes = self.surface.sliding(|i| (friction.force[i], moved(i), friction.coefficient * normal[i]));
+        self.surface.respond(&mut nodes, |i| {
             if normal[i] > 0.0 { (1.0 + pressed(i) / normal[i]).max(0.0) } else { 1.0 }
         });
-        friction.surface.forces(&nodes).for_each(|(i, force)| each(i, force - friction.force[i]));
+        self.surface.forces(&nodes).for_each(|(i, force)| each(i, force - friction.force[i]));
     }
 
     /// Ends an instant whose forces have been found: books the work of friction since the one before.

@@ -17,7 +17,7 @@ const RESPONSE_PASSES: usize = 3;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Surface {
     nodes: Vec<usize>,
-    /// Normals at the nodes when the compliance was made. Shape (n).
+    /// Normals with which the nodes' compliance was made. Shape (n).
     normal: Vec<Vector3<f64>>,
     /// Directions across the present normals. Shape (n, 2).
     axes: Vec<[Vector3<f64>; 2]>,
@@ -72,7 +72,7 @@ pub(super) struct Pass {
 }
 
 impl Surface {
-    /// Takes the nodes `active` with the normals `normal` of all candidates.
+    /// Takes the nodes `active`, ascending, with the normals `normal` of all candidates.
     pub(super) fn follow(
         &mut self,
         active: &[usize],
@@ -80,41 +80,65 @@ impl Surface {
         watch: &mut Watch,
         nodes: &Nodes,
     ) {
-        let turned = |(i, before): (&usize, &Vector3<f64>)| (normal[*i] - before).amax() > TURN;
-        if self.nodes != active || self.nodes.iter().zip(&self.normal).any(turned) {
-            self.nodes.clear();
-            self.nodes.extend_from_slice(active);
-            self.normal.clear();
-            self.normal.extend(active.iter().map(|&i| normal[i]));
-            self.axes.clear();
-            self.axes.extend(self.normal.iter().map(across));
-            self.fill(watch, nodes);
-        } else {
-            for (axes, &i) in self.axes.iter_mut().zip(active) {
-                axes[0] = (axes[0] - normal[i].dot(&axes[0]) * normal[i]).normalize();
-                axes[1] = normal[i].cross(&axes[0]);
+        let place_before = |i: &usize| {
+            let place = self.nodes.binary_search(i).ok();
+            place.filter(|&place| (normal[*i] - self.normal[place]).amax() <= TURN)
+        };
+        let before: Vec<Option<usize>> = active.iter().map(place_before).collect();
+        if self.nodes != active || before.contains(&None) {
+            self.replace(active, normal, &before);
+            for place in (0..active.len()).filter(|&place| before[place].is_none()) {
+                self.fill(place, watch, nodes);
+            }
+        }
+        for (axes, &i) in self.axes.iter_mut().zip(active) {
+            axes[0] = (axes[0] - normal[i].dot(&axes[0]) * normal[i]).normalize();
+            axes[1] = normal[i].cross(&axes[0]);
+        }
+    }
+
+    /// Takes other nodes, with what is known of those that have been there, at the places `before`.
+    fn replace(&mut self, active: &[usize], normal: &[Vector3<f64>], before: &[Option<usize>]) {
+        let old = std::mem::take(self);
+        let (m, n) = (old.nodes.len(), active.len());
+        self.nodes.extend_from_slice(active);
+        self.compliance.resize(4 * n * n, 0.0);
+        let columns = self.compliance.chunks_exact_mut(4 * n);
+        for ((&i, place), columns) in active.iter().zip(before).zip(columns) {
+            let Some(place) = *place else {
+                self.normal.push(normal[i]);
+                self.axes.push(across(&normal[i]));
+                self.own.push(0.0);
+                continue;
+            };
+            self.normal.push(old.normal[place]);
+            self.axes.push(old.axes[place]);
+            self.own.push(old.own[place]);
+            let known = old.compliance[4 * m * place..].chunks_exact(m);
+            for (column, known) in columns.chunks_exact_mut(n).zip(known) {
+                for (entry, place) in column.iter_mut().zip(before) {
+                    *entry = place.map_or(0.0, |place| known[place]);
+                }
             }
         }
     }
 
-    /// Makes the compliance.
-    fn fill(&mut self, watch: &mut Watch, nodes: &Nodes) {
-        let n = self.nodes.len();
-        self.compliance.clear();
-        self.compliance.reserve(4 * n * n);
-        self.own.clear();
-        for (b, &j) in self.nodes.iter().enumerate() {
-            for direction in self.axes[b] {
-                watch.under(nodes, j, direction);
+    /// Makes what concerns the node in this `place`; the compliance is symmetric.
+    fn fill(&mut self, place: usize, watch: &mut Watch, nodes: &Nodes) {
+        let (n, end) = (self.nodes.len(), watch.up_to(&self.nodes));
+        for d in 0..2 {
+            watch.under(nodes, self.nodes[place], self.axes[place][d], end);
+            for (a, (&i, axes)) in self.nodes.iter().zip(&self.axes).enumerate() {
                 for c in 0..2 {
-                    let along = self.nodes.iter().zip(&self.axes).map(|(&i, axes)| watch.compliance(i, axes[c]));
-                    self.compliance.extend(along);
+                    let entry = watch.compliance(i, axes[c]);
+                    self.compliance[(4 * place + 2 * d + c) * n + a] = entry;
+                    self.compliance[(4 * a + 2 * c + d) * n + place] = entry;
                 }
             }
-            let entry = |d: usize, c: usize| self.compliance[((2 * b + d) * 2 + c) * n + b];
-            let (mean, half) = (0.5 * (entry(0, 0) + entry(1, 1)), 0.5 * (entry(0, 0) - entry(1, 1)));
-            self.own.push(mean + half.hypot(entry(0, 1)));
         }
+        let entry = |d: usize, c: usize| self.compliance[(4 * place + 2 * d + c) * n + place];
+        let (mean, half) = (0.5 * (entry(0, 0) + entry(1, 1)), 0.5 * (entry(0, 0) - entry(1, 1)));
+        self.own[place] = mean + half.hypot(entry(0, 1));
     }
 
     /// The nodes with what `of` gives for each candidate: force in N, motion in m over the ball's surface, largest tangential force in N.

@@ -167,12 +167,12 @@ impl Watch {
         Vector3::from_fn(|c, _| at(c * w + slot))
     }
 
-    /// Keeps the displacements under a unit force on `j` along `normal`, for [`Watch::compliance`].
-    pub fn under(&mut self, nodes: &Nodes, j: usize, normal: Vector3<f64>) {
+    /// Keeps the displacements of the slots before `end` under a unit force on `j` along `normal`, for [`Watch::compliance`].
+    pub fn under(&mut self, nodes: &Nodes, j: usize, normal: Vector3<f64>, end: usize) {
         self.gather(nodes, j);
         let (w, columns) = (self.len(), &self.columns);
         let column = |j: usize| &columns[self.gathered[j] * 9 * w..][..9 * w];
-        deform_under(&mut self.unit, 0..w, column, &[(j, normal)]);
+        deform_under(&mut self.unit, 0..end, column, &[(j, normal)]);
     }
 
     /// n_i^T R_ij n_j in m/N, the displacement of `i` along its `normal`, after [`Watch::under`] for j.
