@@ -61,16 +61,21 @@ fn more_friction_than_solids_have_is_refused() {
 
 #[test]
 fn friction_converges_in_time_and_keeps_the_tolerance() {
-    let model = rough(0.3).expect("model");
-    let velocity = |step: f64| model.integrate(step, 1e-6, false).expect("run").state.sphere_velocity;
-    let exact = velocity(1e-6 / 32.0);
-    let error = |[x, z]: [f64; 2]| (x - exact[0]).hypot(z - exact[1]);
-    let errors = [2e-6, 0.25e-6].map(|step| error(velocity(step)));
-    let order = (errors[0] / errors[1]).log(8.0);
-    assert!(order > 1.0 && errors[1] < 2e-4, "order {order}: {errors:?}");
-    for tolerance in [3e-3, 1e-3, 3e-4] {
-        let found = model.run(tolerance).expect("run");
-        let miss = error(["sphere_velocity_x", "sphere_velocity_z"].map(|name| value(&found, name)));
-        assert!(miss < tolerance * exact[0].hypot(exact[1]), "{tolerance}: {miss}");
+    let mut orders = Vec::new();
+    for friction in [0.1, 0.2, 0.3] {
+        let model = rough(friction).expect("model");
+        let velocity = |step: f64| model.integrate(step, 1e-6, false).expect("run").state.sphere_velocity;
+        let exact = velocity(1e-6 / 64.0);
+        let error = |[x, z]: [f64; 2]| (x - exact[0]).hypot(z - exact[1]) / exact[0].hypot(exact[1]);
+        let errors = [2e-6, 0.25e-6].map(|step| error(velocity(step)));
+        assert!(errors[1] < 5e-5, "{friction}: {errors:?}");
+        orders.push((errors[0] / errors[1]).log(8.0));
+        for tolerance in [3e-3, 1e-3, 3e-4] {
+            let found = model.run(tolerance).expect("run");
+            let miss = error(["sphere_velocity_x", "sphere_velocity_z"].map(|name| value(&found, name)));
+            assert!(miss < tolerance, "{friction}, {tolerance}: {miss}");
+        }
     }
+    // of second order but for the kinks where nodes begin to stick
+    assert!(orders.iter().sum::<f64>() > 1.5 * 3.0, "{orders:?}");
 }

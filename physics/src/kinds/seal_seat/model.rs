@@ -198,7 +198,7 @@ impl SeatModel {
 
     /// Runs the impact; the step is halved until the sphere's velocity changes by less than three times `tolerance`
     /// of its magnitude, of which the finer run has a third as its error (second order), and the energy by less than a tenth of
-    /// it; on a rough seat by less than `tolerance` (first order).
+    /// it.
     ///
     /// # Errors
     /// As [`integrate`] and [`balance_check`]; [`Error::Solver`] if the tolerance can't be reached.
@@ -228,8 +228,6 @@ impl SeatModel {
 
     /// The first result that meets the tolerance, and its step.
     fn converged(&self, tolerance: f64) -> Result<(Integration, f64)> {
-        // of second order, or of first at least
-        let share = if self.is_rough() { 1.0 } else { 3.0 };
         let (mut step, mut coarse) = (self.first_step, self.predictor);
         for _ in 0..HALVINGS {
             step *= 0.5;
@@ -237,7 +235,7 @@ impl SeatModel {
             let fine = result.state.sphere_velocity;
             let change = (coarse[0] - fine[0]).hypot(coarse[1] - fine[1]);
             let balanced = result.energy_residual <= (LEDGER * tolerance).max(LEAST_RESIDUAL);
-            if balanced && change <= share * tolerance * fine[0].hypot(fine[1]) {
+            if balanced && change <= 3.0 * tolerance * fine[0].hypot(fine[1]) {
                 return Ok((result, step));
             }
             coarse = fine;

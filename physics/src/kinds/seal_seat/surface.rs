@@ -9,7 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 /// that is off by so much slows the iteration, and does not change what it converges to.
 const TURN: f64 = 2e-3;
 /// Tangential force over the largest one from which on a node slides.
-const SLIDING: f64 = 1.0 - 1e-6;
+pub(super) const SLIDING: f64 = 1.0 - 1e-6;
 /// Passes over the nodes that stick for their part of a correction: more change nothing that counts.
 const RESPONSE_PASSES: usize = 3;
 
@@ -201,7 +201,7 @@ fn across(normal: &Vector3<f64>) -> [Vector3<f64>; 2] {
     [first, normal.cross(&first)]
 }
 
-/// A pass.
+/// See [`Surface::pass`].
 struct GaussSeidel<'a> {
     surface: &'a Surface,
     nodes: &'a mut Sliding,
@@ -227,5 +227,51 @@ impl WithSimd for GaussSeidel<'_> {
             nodes.push(place, change, columns);
         }
         pass
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::contact::tests::nodes;
+    use super::*;
+
+    /// Forces that cancel given slips, of sets that lose and win nodes while their normals turn.
+    #[test]
+    fn sticking_nodes_are_pushed_back_to_where_they_were() {
+        let mut random = fastrand::Rng::with_seed(7);
+        let (nodes, residual) = nodes(12, &mut random);
+        let mut watch = Watch::none(12);
+        watch.choose(&nodes, &(0..12).rev().collect::<Vec<_>>());
+        let mut normal: Vec<Vector3<f64>> =
+            (0..12).map(|_| Vector3::from_fn(|_, _| random.f64() - 0.5).normalize()).collect();
+        let mut surface = Surface::default();
+        for active in [&[0, 3, 5][..], &[0, 3, 5, 7], &[3, 7, 8, 11], &[3, 7, 8, 11]] {
+            surface.follow(active, &normal, &mut watch, &nodes);
+            let slip: Vec<Vector3<f64>> = active
+                .iter()
+                .map(|&i| {
+                    let slip = Vector3::from_fn(|_, _| random.f64() - 0.5);
+                    slip - normal[i].dot(&slip) * normal[i]
+                })
+                .collect();
+            let place = |i: usize| active.iter().position(|&j| i == j).expect("active");
+            let mut sliding = surface.sliding(|i| (Vector3::zeros(), slip[place(i)], f64::INFINITY));
+            for _ in 0..2000 {
+                surface.pass(&mut sliding);
+            }
+            let force: Vec<_> = surface.forces(&sliding).collect();
+            for (&i, slip) in active.iter().zip(&slip) {
+                let moved = Vector3::from_fn(|c, _| {
+                    let row = &residual[(3 * i + c) * 36..][..36];
+                    force.iter().map(|(j, f)| (0..3).map(|d| row[3 * j + d] * f[d]).sum::<f64>()).sum()
+                });
+                let left = slip + moved - normal[i].dot(&moved) * normal[i];
+                assert!(left.norm() < 0.02 * slip.norm(), "{active:?}, {i}: {left}");
+            }
+            // less than makes a new compliance
+            for normal in &mut normal {
+                *normal = (*normal + 0.5 * TURN * Vector3::from_fn(|_, _| random.f64() - 0.5)).normalize();
+            }
+        }
     }
 }
