@@ -1,10 +1,12 @@
 //! Kernels of the reduced models, by criterion: `cargo bench --bench kernels`.
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use impactcheck::body::cache::Cache;
 use impactcheck::body::kirchhoff::UnitPlate;
 use impactcheck::contact::{Hertz, PatchFlexibility, PatchTable, RADII, Residual};
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::kinds::plate_impact::shared::SharedBodies;
+use impactcheck::kinds::seal_seat::{SeatMesh, SeatModel};
 use impactcheck::numerics::duhamel::Oscillator;
 use impactcheck::scene::{Edge, Model, Scene};
 use std::hint::black_box;
@@ -75,6 +77,23 @@ fn impact(c: &mut Criterion) {
     group.bench_function("with_free_flight", |b| b.iter(|| flight.point(1e-6).expect("an impact")));
 }
 
+/// A smooth and a rough seal seat.
+fn seat(c: &mut Criterion) {
+    let mut group = c.benchmark_group("seat");
+    for name in ["seal-seat-initial", "seal-seat-improved"] {
+        let text = std::fs::read_to_string(format!("scenes/{name}.toml")).expect("a scene");
+        let mesh = SeatMesh::open(format!("meshes/{name}.vtu").as_ref()).expect("a mesh");
+        for friction in [0.0, 0.1, 0.3] {
+            let scene =
+                Scene::parse("scene.toml", &format!("friction = {friction}\n{text}")).expect("a valid scene");
+            let model = SeatModel::new(&scene, Model::C, Some(16), &mesh, &Cache::off()).expect("a model");
+            group.bench_function(format!("{name}_{friction}"), |b| {
+                b.iter(|| model.point(1e-3).expect("an impact"));
+            });
+        }
+    }
+}
+
 /// Oblique impacts with friction and without, at the centre of a plate and off it.
 fn friction(c: &mut Criterion) {
     let mut group = c.benchmark_group("friction");
@@ -112,6 +131,6 @@ criterion_group! {
         .sample_size(20)
         .warm_up_time(Duration::from_millis(200))
         .measurement_time(Duration::from_millis(500));
-    targets = moments, contact, plate, impact, friction, sweep_point
+    targets = moments, contact, plate, impact, friction, seat, sweep_point
 }
 criterion_main!(kernels);
