@@ -172,11 +172,14 @@ impl Similar {
         }
         let stated =
             continuum.truncation_error.ok_or("the result does not state the error of the omitted modes")?;
+        // independent of the errors of the base, whose results have converged
+        let unconverged = continuum.integration_error.unwrap_or(0.0);
         let half_width = |(name, _): (&'static str, f64)| {
             let place = place(&own.results, &own.numbers, name, stated);
             let errors = errors(&self.scenes, name);
             let error = ErrorScale::new(&errors).filter(|_| errors.len() >= FEWEST)?;
-            Some((name, (error.half_width(&place), errors.len())))
+            let own = if name == OF_ALL_MODES { 0.0 } else { unconverged };
+            Some((name, (error.half_width(&place).hypot(own), errors.len())))
         };
         let found: BTreeMap<_, _> = values(continuum).filter_map(half_width).collect();
         match found.is_empty() {

@@ -2,7 +2,7 @@
 
 use impactcheck::evidence::study::{self, Cell};
 use impactcheck::kinds::plate_impact::reduced::Reduced;
-use impactcheck::prediction::{LEVEL, predict, scale};
+use impactcheck::prediction::{Interval, LEVEL, predict, scale};
 use impactcheck::report::model_page;
 use impactcheck::scene::{Model, Scene, resolve};
 use impactcheck::validated::shipped;
@@ -38,6 +38,23 @@ fn intervals_from_some_scenes_of_the_base_hold_the_others() {
     }
     let svg = study::prediction::figure(&study);
     assert!(svg.matches("<circle").count() > 500 && !svg.contains("NaN"));
+}
+
+/// Of a result that has not converged by 5 %: no interval is narrower but that of the frequency.
+#[test]
+fn intervals_hold_the_error_that_a_result_states() {
+    let scene = Scene::read(resolve("scaled-plate-r10").unwrap()).unwrap();
+    let converged = Reduced::new(&scene, Model::C, None).and_then(|model| model.run(1e-7)).unwrap();
+    let mut summary = converged.clone();
+    summary.integration_error = Some(0.05);
+    let [wide, narrow] = [&summary, &converged].map(|summary| predict(&scene, summary).unwrap());
+    for name in ["efficiency", "outer_force_peak", "inner_velocity_final"] {
+        let scale =
+            scale(name, |name| summary.value(name), scene.plate_impact().unwrap().outer.speed).unwrap();
+        let half = |interval: &Interval| 0.5 * (interval.high - interval.low) / scale;
+        assert!(half(&wide[name]) >= 0.05 && half(&narrow[name]) < 0.02, "{name}: {:?}", wide[name]);
+    }
+    assert_eq!(wide["first_frequency"].high, narrow["first_frequency"].high);
 }
 
 /// Scenes that were chosen by hand, solved on finer meshes than those of the base: their references lie within, but for their bands.

@@ -9,7 +9,7 @@ use crate::dynamics::memory::{self, ForceHistory, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::dynamics::wet::FluidForces;
 use crate::error::{Error, Result};
-use crate::kinds::rubbing::Rubbing;
+use crate::kinds::rubbing::{Rubbing, is_settled};
 use crate::result::{Impact, Table};
 use crate::scene::Series;
 use std::collections::BTreeMap;
@@ -184,6 +184,14 @@ impl Impacts<'_> {
             uncertainty: BTreeMap::new(),
         }
     }
+}
+
+/// Error of final velocities, over the impact speed, that `result` states: of the time integration, or of friction's effect on the normal
+/// motion where that has not converged.
+pub(super) fn stated_error(result: &Integration) -> Option<f64> {
+    let unsettled = result.friction.as_ref().filter(|_| !is_settled(result, 0.0));
+    let friction = unsettled.map(|friction| friction.error);
+    result.error_estimate.into_iter().chain(friction).reduce(f64::max)
 }
 
 /// A sentence if the final velocities of steps of adapted length have not converged to `tolerance`.

@@ -130,8 +130,8 @@ pub struct Summary {
     /// Reduced models of a body from a mesh whose scene lists them: the lowest eigenfrequencies in Hz, ascending.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub frequencies: Vec<f64>,
-    /// Estimated error of the final velocities from the time integration, over the impact speed; of impacts with many
-    /// contacts only, which amplify it.
+    /// Estimated error of the final velocities, over the impact speed: from the time integration of impacts with many contacts, which amplify
+    /// it, and from friction whose effect on the normal motion has not converged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integration_error: Option<f64>,
     /// Off-centre impacts (references), those at an angle or with spin, unless the run was cut during a contact.

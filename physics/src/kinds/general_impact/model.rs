@@ -15,7 +15,7 @@ use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::dynamics::{MovingBody, StopReason, balance_check, error_control, integrate};
 use crate::error::{Error, Result};
-use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
+use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, stated_error, uncertain, uncountable};
 use crate::kinds::rubbing::{Rubbed, Rubbing, is_settled, omitted_stiffening};
 use crate::kinds::{Kind as _, SeriesModel};
 use crate::material::Material;
@@ -293,7 +293,7 @@ impl ContactModel {
             energy_residual: Some(result.energy_residual),
             momentum_residual: Some(result.momentum_residual),
             steps: Some(result.steps),
-            integration_error: result.error_estimate,
+            integration_error: stated_error(result),
             truncation_error: omitted,
             mesh_error,
             bender: system.drive.map(|drive| BenderSummary {

@@ -9,7 +9,7 @@ use crate::dynamics::integrator::integrate;
 use crate::dynamics::memory::{self, Bending, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
 use crate::error::{Error, Result};
-use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, uncertain, uncountable};
+use crate::kinds::impacts::{Done, Impacts, SAMPLES_PER_CONTACT, stated_error, uncertain, uncountable};
 use crate::kinds::plate_impact::results::{PlateQuantities, quantities, values};
 use crate::kinds::plate_impact::trials::TruncationError;
 use crate::kinds::plate_impact::truncation;
@@ -357,7 +357,7 @@ impl Reduced {
             momentum_residual: Some(result.momentum_residual),
             steps: Some(result.steps),
             solve_seconds,
-            integration_error: result.error_estimate,
+            integration_error: stated_error(result),
             mesh_error,
             truncation_error: Some(truncation.error),
             bender: system.drive.map(|drive| {
