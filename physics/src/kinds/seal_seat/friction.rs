@@ -110,8 +110,9 @@ impl ContactProblem<'_> {
     }
 
     fn not_settled(&self, rounds: usize) -> Error {
+        let friction = self.loads.friction.as_ref().map_or(0.0, |friction| friction.coefficient);
         Error::Solver(format!(
-            "the friction forces of the seal seat did not converge in {rounds} iterations with {} nodes in contact",
+            "the friction forces of the seal seat did not converge in {rounds} iterations with {} nodes in contact: a friction of {friction} is too large for model C on this mesh; reduce it, or use the reference alone",
             self.loads.active.len()
         ))
     }
