@@ -15,7 +15,7 @@
 
 use super::friction::Friction;
 use super::nodes::{Ball, Nodes};
-use super::surface::Surface;
+use super::surface_compliance::SurfaceCompliance;
 use super::traces::{Push, Traces};
 use super::watch::Watch;
 use crate::error::{Error, Result};
@@ -70,7 +70,7 @@ pub struct ContactProblem<'a> {
     pub(super) factor_normal: Vec<Vector3<f64>>,
     pub(super) previous: Vec<usize>,
     /// The nodes in contact, as friction needs them.
-    pub(super) surface: Surface,
+    pub(super) surface: SurfaceCompliance,
     pub(super) step: Vec<f64>,
     /// Contact set with the forces on the body in N.
     pub(super) push: Vec<Push>,
@@ -132,7 +132,7 @@ impl<'a> ContactProblem<'a> {
             factored: Vec::with_capacity(n),
             factor_normal: vec![Vector3::zeros(); n],
             previous: Vec::with_capacity(n),
-            surface: Surface::default(),
+            surface: SurfaceCompliance::default(),
             step: Vec::with_capacity(n),
             push: Vec::with_capacity(n),
             surveyed: vec![0.0; n],

@@ -7,7 +7,7 @@
 
 use super::contact::ContactProblem;
 use super::nodes::Ball;
-use super::surface::{Pass, SLIDING};
+use super::surface_compliance::{Pass, SLIDING};
 use crate::error::{Error, Result};
 use nalgebra::Vector3;
 

@@ -23,7 +23,7 @@ mod results;
 mod scene;
 mod series;
 mod shape;
-mod surface;
+mod surface_compliance;
 mod survey;
 pub mod system;
 pub mod traces;

@@ -15,7 +15,7 @@ const RESPONSE_PASSES: usize = 3;
 
 /// The nodes in contact, with two directions along the surface each.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Surface {
+pub(super) struct SurfaceCompliance {
     nodes: Vec<usize>,
     /// Normals with which the nodes' compliance was made. Shape (n).
     normal: Vec<Vector3<f64>>,
@@ -27,9 +27,9 @@ pub(super) struct Surface {
     own: Vec<f64>,
 }
 
-/// Nodes that stick or slide, by the directions of a [`Surface`].
+/// Nodes that stick or slide, by the directions of a [`SurfaceCompliance`].
 #[derive(Debug, Clone, Default)]
-pub(super) struct Sliding {
+pub(super) struct SlidingNodes {
     /// Tangential forces in N. Shape (2, n).
     force: Vec<f64>,
     /// Motion in m over the ball's surface. Shape (2, n).
@@ -38,7 +38,7 @@ pub(super) struct Sliding {
     most: Vec<f64>,
 }
 
-impl Sliding {
+impl SlidingNodes {
     /// Of `n` nodes without forces.
     fn of(n: usize) -> Self {
         Self { force: vec![0.0; 2 * n], slip: vec![0.0; 2 * n], most: vec![0.0; n] }
@@ -71,7 +71,7 @@ pub(super) struct Pass {
     pub(super) held: f64,
 }
 
-impl Surface {
+impl SurfaceCompliance {
     /// Takes the nodes `active`, ascending, with the normals `normal` of all candidates.
     pub(super) fn follow(
         &mut self,
@@ -142,9 +142,9 @@ impl Surface {
     }
 
     /// The nodes with what `of` gives for each candidate: force in N, motion in m over the ball's surface, largest tangential force in N.
-    pub(super) fn sliding(&self, of: impl Fn(usize) -> (Vector3<f64>, Vector3<f64>, f64)) -> Sliding {
+    pub(super) fn sliding(&self, of: impl Fn(usize) -> (Vector3<f64>, Vector3<f64>, f64)) -> SlidingNodes {
         let n = self.nodes.len();
-        let mut nodes = Sliding::of(n);
+        let mut nodes = SlidingNodes::of(n);
         for (place, (&i, axes)) in self.nodes.iter().zip(&self.axes).enumerate() {
             let (force, slip, most) = of(i);
             for c in 0..2 {
@@ -157,7 +157,7 @@ impl Surface {
     }
 
     /// The forces in N on `nodes`, with the candidates.
-    pub(super) fn forces(&self, nodes: &Sliding) -> impl Iterator<Item = (usize, Vector3<f64>)> {
+    pub(super) fn forces(&self, nodes: &SlidingNodes) -> impl Iterator<Item = (usize, Vector3<f64>)> {
         self.nodes.iter().zip(&self.axes).enumerate().map(|(place, (&i, axes))| {
             let [first, second] = nodes.at(place);
             (i, first * axes[0] + second * axes[1])
@@ -165,13 +165,13 @@ impl Surface {
     }
 
     /// Lets each node stick or slide, in turn.
-    pub(super) fn pass(&self, nodes: &mut Sliding) -> Pass {
+    pub(super) fn pass(&self, nodes: &mut SlidingNodes) -> Pass {
         Arch::new().dispatch(GaussSeidel { surface: self, nodes })
     }
 
     /// Changes the forces as far as small slips and other normal forces do, `pressed` times those before: what slides goes on sliding the
     /// same way, what sticks yields.
-    pub(super) fn respond(&self, nodes: &mut Sliding, pressed: impl Fn(usize) -> f64) {
+    pub(super) fn respond(&self, nodes: &mut SlidingNodes, pressed: impl Fn(usize) -> f64) {
         let size = 4 * self.nodes.len();
         let column = |place: usize| &self.compliance[place * size..][..size];
         let mut sticking = Vec::with_capacity(self.nodes.len());
@@ -201,10 +201,10 @@ fn across(normal: &Vector3<f64>) -> [Vector3<f64>; 2] {
     [first, normal.cross(&first)]
 }
 
-/// See [`Surface::pass`].
+/// See [`SurfaceCompliance::pass`].
 struct GaussSeidel<'a> {
-    surface: &'a Surface,
-    nodes: &'a mut Sliding,
+    surface: &'a SurfaceCompliance,
+    nodes: &'a mut SlidingNodes,
 }
 
 impl WithSimd for GaussSeidel<'_> {
@@ -212,7 +212,7 @@ impl WithSimd for GaussSeidel<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Pass {
-        let Self { surface: Surface { compliance, own, .. }, nodes } = self;
+        let Self { surface: SurfaceCompliance { compliance, own, .. }, nodes } = self;
         let n = own.len();
         let mut pass = Pass::default();
         for (place, columns) in compliance.chunks_exact(4 * n).enumerate() {
@@ -244,7 +244,7 @@ mod tests {
         watch.choose(&nodes, &(0..12).rev().collect::<Vec<_>>());
         let mut normal: Vec<Vector3<f64>> =
             (0..12).map(|_| Vector3::from_fn(|_, _| random.f64() - 0.5).normalize()).collect();
-        let mut surface = Surface::default();
+        let mut surface = SurfaceCompliance::default();
         for active in [&[0, 3, 5][..], &[0, 3, 5, 7], &[3, 7, 8, 11], &[3, 7, 8, 11]] {
             surface.follow(active, &normal, &mut watch, &nodes);
             let slip: Vec<Vector3<f64>> = active
