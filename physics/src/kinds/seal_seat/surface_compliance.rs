@@ -5,8 +5,8 @@ use super::watch::Watch;
 use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Turn of a normal in rad up to which the compliance is taken as that of the normal before. It only says how forces change: a compliance
-/// that is off by so much slows the iteration, and does not change what it converges to.
+/// Turn of a normal in rad up to which the compliance made with the normal before is kept. The compliance only predicts how slips change: an
+/// error of that size makes the iteration slower, but does not change its result.
 const TURN: f64 = 2e-3;
 /// Tangential force over the largest one from which on a node slides.
 pub(super) const SLIDING: f64 = 1.0 - 1e-6;
