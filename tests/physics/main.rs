@@ -9,6 +9,7 @@ mod continuum_impact;
 mod continuum_plate_flexibility;
 mod continuum_plate_frequencies;
 mod continuum_sphere;
+mod even_steps;
 mod friction;
 mod general_impact;
 mod hertz_goldsmith;

@@ -18,6 +18,20 @@ pub struct StepCourse<const P: usize> {
     pub work: f64,
 }
 
+/// One of many short steps, between whose ends nothing is known.
+pub struct EvenStep {
+    /// Length in s.
+    pub h: f64,
+    /// Mean force in N.
+    pub mean: f64,
+    /// Largest force in N.
+    pub peak: f64,
+    /// Local approach at both ends, m.
+    pub local_approach: [f64; 2],
+    /// Work of the force along the approach, J.
+    pub work: f64,
+}
+
 /// Account of one contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ContactBalance {
@@ -60,21 +74,16 @@ impl ContactBalance {
         Self { negligible, least_turn: f64::INFINITY, ..Self::default() }
     }
 
-    /// Books a step from `time` s of `h` s with the mean force `mean` and the force `last` at its end in N, in which the local approach in
-    /// m changes evenly between its values at start and end.
-    pub fn add_even(
-        &mut self,
-        (time, h): (f64, f64),
-        [mean, last]: [f64; 2],
-        local_approach: [f64; 2],
-        work: f64,
-    ) {
+    /// Books a step in which the force is known at its ends alone; `released` is as in [`Self::pass`].
+    #[inline(always)]
+    pub fn add_even(&mut self, step: &EvenStep, released: impl FnOnce() -> (f64, f64)) {
         let before = self.impulse;
-        self.impulse += h * mean;
-        self.work += work;
-        self.force_peak = self.force_peak.max(last);
-        let [start, end] = local_approach;
-        self.pass(end > 0.0, before, || (time + h * start / (start - end), (start - end) / h));
+        self.impulse += step.h * step.mean;
+        self.work += step.work;
+        self.force_peak = self.force_peak.max(step.peak);
+        let [start, end] = step.local_approach;
+        self.turn(start, (end - start, step.h));
+        self.pass(end > 0.0, before, released);
     }
 
     /// Books a step.

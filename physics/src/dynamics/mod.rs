@@ -11,6 +11,7 @@ mod direct;
 pub(crate) mod driver;
 pub mod equations;
 pub mod error_control;
+pub mod even_steps;
 mod force_peak;
 mod free_flight;
 pub mod friction_load;

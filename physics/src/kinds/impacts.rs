@@ -3,7 +3,7 @@
 use crate::dynamics::StopReason;
 use crate::dynamics::contact_balance::ContactBalance;
 use crate::dynamics::error_control::{self, controlled};
-use crate::dynamics::integrate;
+
 use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::memory::{self, ForceHistory, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
@@ -104,9 +104,7 @@ impl Impacts<'_> {
     }
 
     fn elastic(&self, options: &Options) -> Result<Integration> {
-        let run = |system: &System, options: &Options| {
-            controlled(options, system, |options| integrate(system, self.fluid, options))
-        };
+        let run = |system: &System, options: &Options| controlled(options, system, self.fluid);
         match self.rubbing {
             None => run(self.system, options),
             Some(rubbing) => rubbing.settled(self.system, options, run),

@@ -219,7 +219,7 @@ fn options(impact: &StressImpact) -> Options {
 
 /// Solves an impact as the program does.
 fn integrated(impact: &StressImpact, options: &Options) -> Result<Integration> {
-    controlled(options, &impact.system, |options| integrate(&impact.system, impact.forces.as_ref(), options))
+    controlled(options, &impact.system, impact.forces.as_ref())
 }
 
 /// Solves an impact and looks at what has to hold.

@@ -113,6 +113,20 @@ impl State {
         Some([p[0] - step[0], p[1] - step[1]])
     }
 
+    /// [`Self::newton`]'s patches in m, and the forces in N with them as they grow from this state on.
+    #[inline(always)]
+    pub fn newton_with_forces(
+        &self,
+        further: [f64; 3],
+        y: [f64; 2],
+        p: [f64; 2],
+    ) -> Option<([f64; 2], [f64; 2])> {
+        let step = self.step(further, self.error(further, y, p))?;
+        let slopes = self.slopes(further).force;
+        let force = |i: usize| self.f[i] - slopes[i][0] * step[0] - slopes[i][1] * step[1];
+        Some(([p[0] - step[0], p[1] - step[1]], [force(0), force(1)]))
+    }
+
     /// R_ij with a `further` flexibility.
     #[inline(always)]
     fn flexibility(&self, [own0, mutual, own1]: [f64; 3]) -> [[f64; 2]; 2] {

@@ -9,7 +9,7 @@ use super::step_force::{StepForce, mean};
 use super::step_length::StepLength;
 use super::{CHANGE, CreepingContacts, Ran};
 use crate::contact::Press;
-use crate::dynamics::contact_balance::ContactBalance;
+use crate::dynamics::contact_balance::{ContactBalance, EvenStep};
 use crate::dynamics::driver::{Stepper, StopReason};
 use crate::dynamics::friction_load::GivenLoad;
 use crate::dynamics::integration::{FluidAccount, Integration, NEGLIGIBLE, Options, unexplained_momentum};
@@ -270,9 +270,12 @@ impl<'a> MemoryStepper<'a> {
             let past = x[i] - self.bodies.contacts[i].contact_approach();
             let past =
                 if force[i] > 0.0 { past.max(f64::MIN_POSITIVE) } else { past.min(-f64::MIN_POSITIVE) };
-            let forces = [mean[i], force[i]];
+            let local_approach = [self.past[i], past];
             let work = mean[i] * (y[i] - self.y[i]);
-            self.contacts[i].add_even((self.time, h), forces, [self.past[i], past], work);
+            let step = EvenStep { h, mean: mean[i], peak: force[i], local_approach, work };
+            let [start, time] = [self.past[i], self.time];
+            let released = || (time + h * start / (start - past), (start - past) / h);
+            self.contacts[i].add_even(&step, released);
             self.past[i] = past;
             self.contact_losses[i] += match self.step_force {
                 StepForce::Conserving | StepForce::Mean => taken[i] - self.taken[i],

@@ -126,8 +126,8 @@ fn participations(system: &System, modes: &[SurfaceMode]) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
     use crate::body::ModalBody;
+    use crate::dynamics::MovingBody;
     use crate::dynamics::error_control::controlled;
-    use crate::dynamics::{MovingBody, integrate};
     use crate::material::Material;
     use crate::scene::{Outer, Shape, Turning};
     use approx::assert_relative_eq;
@@ -169,9 +169,7 @@ mod tests {
                 aside: Vec::new(),
                 contacts: [contact.clone(), contact],
             };
-            let run = |system: &System, options: &Options| {
-                controlled(options, system, |options| integrate(system, None, options))
-            };
+            let run = |system: &System, options: &Options| controlled(options, system, None);
             let found = rubbing.settled(&system, &Options::default(), run).unwrap();
             let mobility = system.masses[0].recip() + of_body;
             let impulse = 2.0 * system.speed / (mobility - friction * coupling);
