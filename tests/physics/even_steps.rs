@@ -8,7 +8,7 @@ use impactcheck::dynamics::integration::{Integration, Options};
 use impactcheck::dynamics::integrator::integrate;
 use impactcheck::dynamics::system::System;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
-use impactcheck::scene::{Model, Scene, resolve};
+use impactcheck::scene::{Model, Scene};
 
 /// In so many steps per contact of the outer body on a rigid wall.
 fn in_steps(system: &System, steps: f64) -> Integration {
@@ -61,7 +61,7 @@ fn they_agree_with_steps_of_adapted_length() {
         ("validation/free-plate", Model::B),
         ("validation/thin-plate", Model::B),
     ] {
-        let scene = Scene::read(resolve(name).unwrap()).unwrap();
+        let scene = Scene::read(format!("{}/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
         let reduced = Reduced::new(&scene, model, (model != Model::A).then_some(16)).unwrap();
         let system = reduced.system();
         let exact = integrate(system, &Options { tolerance: 1e-10, ..Options::default() }).unwrap();
