@@ -87,8 +87,10 @@ pub fn all_within(error: f64, options: Options) -> Options {
     }
 }
 
-/// Smallest error for which steps of one length are tried: of smaller ones steps of adapted length are the quicker.
-const SMALLEST_IN_EVEN_STEPS: f64 = 5e-5;
+/// Smallest tolerance, and smallest error of all results, for which steps of one length are tried: of smaller ones steps of adapted length
+/// are the quicker.
+pub const SMALLEST_TOLERANCE_IN_EVEN_STEPS: f64 = 2e-4;
+const SMALLEST_ERROR_IN_EVEN_STEPS: f64 = 5e-5;
 /// How much shorter the steps of the second and the third solution are than those of the one before. With halved steps six of 420 random
 /// impacts agreed by chance, and were wrong by more than the error; with these none of 428, over the whole permitted range.
 const SHORTER: [f64; 2] = [3.0, 2.0];
@@ -131,8 +133,11 @@ pub fn controlled(options: &Options, system: &System, fluid: Option<&FluidForces
 /// The impact in steps of one length, shortened until all results of two solutions agree and the energy is kept; `None` where these steps
 /// do not serve, or not soon.
 fn in_even_steps(options: &Options, system: &System) -> Option<Integration> {
-    let error = options.results.unwrap_or(options.tolerance);
-    if error < SMALLEST_IN_EVEN_STEPS || !even_steps::serve(system, options) || is_strongly_damped(system) {
+    let (error, smallest) = match options.results {
+        Some(error) => (error, SMALLEST_ERROR_IN_EVEN_STEPS),
+        None => (options.tolerance, SMALLEST_TOLERANCE_IN_EVEN_STEPS),
+    };
+    if error < smallest || !even_steps::serve(system, options) || is_strongly_damped(system) {
         return None;
     }
     let solve = |h: f64| even_steps::integrate(system, options, h).ok();

@@ -139,7 +139,7 @@ pub fn run(settings: &Settings, store: &Store, note: &dyn Fn(&str)) -> Result<Be
 /// Every peer against this program's integrator at every error both reach.
 fn integrator_ratios(runs: &[WorkPrecision]) -> Vec<Ratio> {
     let mut keys: Vec<(&str, &str, Option<usize>)> = Vec::new();
-    for run in runs.iter().filter(|run| run.solver != OURS && run.tolerance.is_some()) {
+    for run in runs.iter().filter(|run| !run.solver.starts_with(OURS) && run.tolerance.is_some()) {
         let key = (run.solver.as_str(), run.problem.as_str(), run.modes);
         if !keys.contains(&key) {
             keys.push(key);

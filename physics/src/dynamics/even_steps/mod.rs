@@ -23,7 +23,7 @@ use crate::error::{Error, Result};
 
 /// Open steps from one look at whether the impact is over to the next.
 const OPEN_STEPS: u64 = 16;
-/// Steps per contact that are tried first, for this error, and the power of the error with which there are more.
+/// Steps per contact that are tried first, for this error or a larger one, and the power of a smaller one with which there are more.
 const FIRST_STEPS: f64 = 25.0;
 const FIRST_ERROR: f64 = 1e-3;
 const ERROR_POWER: f64 = 0.4;
@@ -51,7 +51,8 @@ pub fn first_length(system: &System, error: f64) -> f64 {
     let hit =
         HertzImpact { mass: system.masses[1], speed: system.speed, stiffness: system.laws[1].stiffness };
     let inner = if system.can_close(1) { hit.duration() } else { outer };
-    inner.clamp(SHORT_CONTACT * outer, outer) / (FIRST_STEPS * (FIRST_ERROR / error).powf(ERROR_POWER))
+    let steps = FIRST_STEPS * (FIRST_ERROR / error).max(1.0).powf(ERROR_POWER);
+    inner.clamp(SHORT_CONTACT * outer, outer) / steps
 }
 
 /// Integrates the impact in steps of `h` s, as `options` has its end.

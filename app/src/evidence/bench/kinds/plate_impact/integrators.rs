@@ -1,6 +1,7 @@
 //! The time integration against general-purpose integrators on the same equations.
 
 use crate::dynamics::equations::Equations;
+use crate::dynamics::error_control::{SMALLEST_TOLERANCE_IN_EVEN_STEPS, controlled};
 use crate::dynamics::integration::Options;
 use crate::dynamics::integrator::integrate;
 use crate::dynamics::system::{INNER, System};
@@ -17,6 +18,8 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 const SCENE: &str = "scaled-plate-r10";
+/// Name of the solver of points of sweeps: solutions in steps of one length, two at least.
+const POINTS: &str = "impactcheck, points of sweeps";
 /// Evaluations times state entries that a compiled peer's run may cost.
 const PEER_WORK: f64 = 4e9;
 /// Wall time in s that a run of a peer may take.
@@ -47,6 +50,10 @@ pub(super) fn run(modes: usize, settings: &Settings, bench: &mut Bench) -> Resul
     for &tolerance in &settings.tolerances {
         let (result, seconds) = timed(300, || integrate(system, &options(tolerance)))?;
         add(OURS, tolerance, result.velocity[1], seconds);
+    }
+    for &tolerance in settings.tolerances.iter().filter(|t| **t >= SMALLEST_TOLERANCE_IN_EVEN_STEPS) {
+        let (result, seconds) = timed(300, || controlled(&options(tolerance), system, None))?;
+        add(POINTS, tolerance, result.velocity[1], seconds);
     }
     let equations = Equations::new(system);
     let (start, scale) = equations.start(system.hertz_impact().duration());
