@@ -104,8 +104,8 @@ const FEW_IN_EVEN_STEPS: u32 = 10;
 /// Integrates the impact of `system`, in a `fluid` or without, unless it is a simple one with smaller and smaller tolerances until final
 /// velocities, force peaks and impulses differ by at most ten times the tolerance of `options` and no contact is nearly missed; where
 /// these name an error of all results, until times of separation and numbers of contacts agree, too. The last one is the result, its
-/// [`Integration::error_estimate`] the difference to the one before, infinite where numbers of contacts differ. Steps of one length do
-/// it where they serve and two of their solutions agree.
+/// [`Integration::error_estimate`] the difference to the one before, infinite where numbers of contacts differ. Where only
+/// results of moderate accuracy are needed and no history, steps of one length come first.
 ///
 /// # Errors
 /// Those of [`integrate`] at the tolerance of `options`.
@@ -153,11 +153,11 @@ fn in_even_steps(options: &Options, system: &System) -> Option<Integration> {
             return None;
         }
         let left = change / (shorter.powf(LEAST_ORDER) - 1.0);
-        // what moves in neither solution can't part them
+        // modes that move in neither solution leave no difference between them
         let now_moving = even_steps::moving(system, h);
-        let parts = now_moving == system.size() || now_moving > moving;
+        let comparable = now_moving == system.size() || now_moving > moving;
         let clear = !separates_slowly(&next) && !separates_quickly(&next) && !may_be_missed(&next, left);
-        if parts && clear && left.max(next.energy_residual) <= error {
+        if comparable && clear && left.max(next.energy_residual) <= error {
             return Some(Integration { error_estimate: Some(left), ..next });
         }
         before = next;

@@ -3,7 +3,6 @@
 use crate::dynamics::StopReason;
 use crate::dynamics::contact_balance::ContactBalance;
 use crate::dynamics::error_control::{self, controlled};
-
 use crate::dynamics::integration::{Integration, Options};
 use crate::dynamics::memory::{self, ForceHistory, Memory, OnsetOfYield};
 use crate::dynamics::system::System;
