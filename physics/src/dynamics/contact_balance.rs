@@ -74,7 +74,8 @@ impl ContactBalance {
         Self { negligible, least_turn: f64::INFINITY, ..Self::default() }
     }
 
-    /// Books a step in which the force is known at its ends alone; `released` is as in [`Self::pass`].
+    /// Books a step in which the force is known at its ends alone; `released` gives the time of a release in s and the rate of separation
+    /// then in m/s.
     #[inline(always)]
     pub fn add_even(&mut self, step: &EvenStep, released: impl FnOnce() -> (f64, f64)) {
         let before = self.impulse;
