@@ -28,7 +28,7 @@ fn error(found: &Integration, exact: &Integration, speed: f64) -> f64 {
     })
 }
 
-/// Orders of 2.5 and more: half the step, a fifth of the error.
+/// The order is 2.5 or more: half the step, at most a fifth of the error.
 #[test]
 fn a_rebound_from_a_rigid_wall_converges_to_hertzs() {
     let wall = ModalBody { omega: vec![], damping_ratio: vec![], participation: vec![], residual: None };
@@ -49,7 +49,7 @@ fn a_rebound_from_a_rigid_wall_converges_to_hertzs() {
     assert!(errors.windows(2).all(|pair| pair[1] < 0.2 * pair[0]), "{errors:?}");
 }
 
-/// With all quick modes and without, with a residual flexibility, damped.
+/// Models A, B and C: with and without a residual flexibility, damped, with a gap, free, with quick modes.
 #[test]
 fn they_agree_with_steps_of_adapted_length() {
     for (name, model) in [

@@ -99,10 +99,15 @@ pub fn inner_is_gone(system: &System, q: &[f64], v: &[f64]) -> bool {
 
 /// A time in s within which no contact can touch in free flight from the state (`q`, `v`).
 pub fn safe_step(system: &System, q: &[f64], v: &[f64]) -> f64 {
+    let safe = |contact: usize| GapBounds::new(system, contact, q, v).safe(system, q, v);
+    safe(0).min(safe(1))
+}
+
+/// The same, infinite where no contact can touch any more; the outer body has no spring of its own.
+pub fn safe_time(system: &System, q: &[f64], v: &[f64]) -> f64 {
     let safe = |contact: usize| {
         let bounds = GapBounds::new(system, contact, q, v);
-        let (gap, rate) = bounds.gap(system, q, v, 0.0);
-        bounds.safe_step(gap.max(0.0), rate)
+        bounds.horizon(0.0).map_or(f64::INFINITY, |_| bounds.safe(system, q, v))
     };
     safe(0).min(safe(1))
 }
@@ -212,6 +217,12 @@ impl GapBounds {
         } else {
             f64::INFINITY
         }
+    }
+
+    /// [`Self::safe_step`] from the start, of which `q` and `v` are the state.
+    fn safe(&self, system: &System, q: &[f64], v: &[f64]) -> f64 {
+        let (gap, rate) = self.gap(system, q, v, 0.0);
+        self.safe_step(gap.max(0.0), rate)
     }
 
     /// A step in s from a gap and its rate within which the gap cannot close: gap + rate t - acceleration t^2/2 >= 0.

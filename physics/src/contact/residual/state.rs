@@ -43,6 +43,20 @@ pub(super) struct Slopes {
     pub(super) approach: [[f64; 2]; 2],
 }
 
+impl Slopes {
+    /// As [`State::step`]; `None` where the contacts' system has no unique answer.
+    #[inline(always)]
+    fn step(&self, error: [f64; 2]) -> Option<[f64; 2]> {
+        let [[a, b], [c, e]] = self.approach;
+        let determinant = a * e - b * c;
+        if determinant.is_nan() || determinant <= 0.0 {
+            return None;
+        }
+        let scale = 1.0 / determinant;
+        Some([scale * (e * error[0] - b * error[1]), scale * (a * error[1] - c * error[0])])
+    }
+}
+
 impl Residual {
     /// The state with the patches `p` in m, negative for an open contact.
     #[inline(always)]
@@ -121,9 +135,9 @@ impl State {
         y: [f64; 2],
         p: [f64; 2],
     ) -> Option<([f64; 2], [f64; 2])> {
-        let step = self.step(further, self.error(further, y, p))?;
-        let slopes = self.slopes(further).force;
-        let force = |i: usize| self.f[i] - slopes[i][0] * step[0] - slopes[i][1] * step[1];
+        let slopes = self.slopes(further);
+        let step = slopes.step(self.error(further, y, p))?;
+        let force = |i: usize| self.f[i] - slopes.force[i][0] * step[0] - slopes.force[i][1] * step[1];
         Some(([p[0] - step[0], p[1] - step[1]], [force(0), force(1)]))
     }
 
@@ -147,13 +161,7 @@ impl State {
     /// Newton's step in the patches, m, to be taken off, that answers `error` in m.
     #[inline(always)]
     pub(super) fn step(&self, further: [f64; 3], error: [f64; 2]) -> Option<[f64; 2]> {
-        let [[a, b], [c, e]] = self.slopes(further).approach;
-        let determinant = a * e - b * c;
-        if determinant.is_nan() || determinant <= 0.0 {
-            return None;
-        }
-        let scale = 1.0 / determinant;
-        Some([scale * (e * error[0] - b * error[1]), scale * (a * error[1] - c * error[0])])
+        self.slopes(further).step(error)
     }
 
     /// Derivatives by the patches; an open contact has y_i = p_i + what it yields. With U stationary in the patches,

@@ -29,7 +29,7 @@ const FIRST_ERROR: f64 = 1e-3;
 const ERROR_POWER: f64 = 0.4;
 /// Least duration of the inner contact, over the outer one's, that these steps follow.
 const SHORT_CONTACT: f64 = 0.25;
-/// Steps that a flight has to be long to be passed at once.
+/// A flight longer than so many steps is passed at once.
 const LONG_FLIGHT: f64 = 16.0;
 
 /// Whether steps of one length serve the `system` for a run with these `options`.
@@ -170,19 +170,19 @@ impl Stepper for EvenStepper<'_> {
     }
 
     fn advance(&mut self) -> Result<bool> {
+        let rest = self.end_time - self.time;
         if self.open % OPEN_STEPS == 1 {
             self.take_state();
             let [q, v] = &self.state;
-            let safe = free_flight::safe_step(self.system, q, v).min(self.end_time - self.time);
-            if safe.is_infinite() || self.end_time.is_infinite() && free_flight::is_over(self.system, q, v) {
+            let flight = free_flight::safe_time(self.system, q, v).min(rest);
+            if flight.is_infinite() {
                 return Ok(false);
             }
-            if safe > LONG_FLIGHT * self.h {
-                self.fly(safe);
+            if flight > LONG_FLIGHT * self.h {
+                self.fly(flight);
                 return Ok(true);
             }
         }
-        let rest = self.end_time - self.time;
         if rest > self.h {
             self.step()?;
             return Ok(true);

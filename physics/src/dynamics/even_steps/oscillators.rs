@@ -12,7 +12,7 @@
 //! and the last term vanishes without damping. What is missing to the approaches, w+ F(n+1), acts as a flexibility on the contacts.
 //! Oscillators that turn too far in a step follow as under static forces: they are flexibility alone.
 
-use crate::dynamics::batch::{LANES, filled_up};
+use crate::dynamics::batch::LANES;
 use crate::dynamics::system::System;
 use crate::numerics::duhamel::Oscillator;
 use wide::f64x4;
@@ -105,8 +105,7 @@ impl EvenOscillators {
                 *sum += product * at_once;
             }
         }
-        let blocks = each.chunks(LANES).map(|chunk| EvenBlock::new(chunk, system));
-        let blocks: Vec<EvenBlock> = blocks.collect();
+        let blocks: Vec<_> = each.chunks(LANES).map(|chunk| EvenBlock::new(chunk, system)).collect();
         let rest = vec![f64x4::ZERO; blocks.len()];
         Self { each, latest: rest.clone(), before: rest, blocks, damped: system.is_damped(), flexibility }
     }
@@ -159,9 +158,7 @@ impl EvenOscillators {
 impl EvenBlock {
     fn new(chunk: &[EvenOscillator], system: &System) -> Self {
         let each = |value: &dyn Fn(&EvenOscillator) -> f64| {
-            let mut values = [0.0; LANES];
-            values.iter_mut().zip(chunk).for_each(|(lane, one)| *lane = value(one));
-            filled_up(&values)
+            f64x4::from(std::array::from_fn(|lane| chunk.get(lane).map_or(0.0, value)))
         };
         let approach = [0, 1].map(|i| each(&|one| system.approach[i][one.place]));
         let force = [0, 1].map(|back| approach.map(|approach| -approach * each(&|one| one.force[back])));
