@@ -247,6 +247,37 @@ fn friction_depends_on_the_surfaces_velocity_alone() {
     assert_relative_eq!(mirrored[1], -spin, max_relative = 1e-12);
 }
 
+/// Chung and Ooi's seventh and eighth tests: two equal balls of an aluminium alloy that meet while they turn against each other, and one that
+/// strikes a ball of five times its radius while it turns. Their balls have a restitution of 0.5 by a dashpot, so that the eighth test is
+/// compared where they slide all the way: there only the impulse matters, by which that test normalises the angle.
+#[test]
+fn two_turning_balls_are_chung_and_ooi_s_last_tests() {
+    const ALLOY: [f64; 3] = [70e9, 0.33, 2700.0];
+    let (friction, speed, radius) = (0.4, 0.2, 0.1);
+    let collide = |spin: f64, inner: &str| {
+        let [modulus, ratio, density] = ALLOY;
+        sideways(&run(&format!(
+            "name = \"test\"\nkind = \"impact\"\nfriction = {friction}\n[materials.alloy]\nyoungs_modulus = {modulus}\n\
+             poisson_ratio = {ratio}\ndensity = {density}\n[outer]\nkind = \"sphere\"\nradius = {radius}\nmaterial = \"alloy\"\n\
+             speed = {speed}\nspin = {spin}\n[inner]\nkind = \"sphere\"\nmaterial = \"alloy\"\n{inner}"
+        )))
+    };
+    for spin in [0.17497733, 0.93261532, 2.0, 4.28901384, 22.86010461] {
+        let [velocity, after] =
+            collide(spin, &format!("radius = {radius}\nspeed = {speed}\nspin = {}\n", -spin));
+        assert!(velocity.abs() < 1e-12 * speed, "{spin}: {velocity}");
+        assert_relative_eq!(after, spin, max_relative = 1e-12);
+    }
+    // 7/2 friction (1 + restitution) normal velocity over that of the surface, and the latter's tangential restitution
+    let read = [[0.187, -0.815], [0.358, -0.626], [0.551, -0.439], [0.765, -0.238], [0.979, -0.017]];
+    for [angle, expected] in read {
+        let surface = 3.5 * friction * 2.0 * speed / angle;
+        let [velocity, spin] = collide(-surface / radius, "radius = 0.5\n");
+        let found = (radius * spin - velocity) / surface;
+        assert!((found - expected).abs() < 0.02, "{angle}: {found} {expected}");
+    }
+}
+
 /// Energy along the surface is kept, but for what friction dissipates; without friction all of it, and sticking dissipates nothing that
 /// no spring releases.
 #[test]
