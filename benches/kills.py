@@ -48,6 +48,7 @@ SOLID = """
 [reference]
 geometry = "solid"
 elements_per_contact_radius = 2
+elements_per_thickness = 1
 element_order = 1
 """
 

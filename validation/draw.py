@@ -204,6 +204,8 @@ def _of_solids(scene: Table) -> Table:
     # model C has no form of supported plates, A and B have none of free ones
     plate["edge"] = "clamped"
     scene["reference"]["elements_per_contact_radius"] = ELEMENTS / 4.0
+    # half the standard: the references of these scenes were computed before it was raised
+    scene["reference"]["elements_per_thickness"] = 1.0
     return scene
 
 

@@ -63,6 +63,8 @@ class Scene(ImpactScene):
     series: Series | None
     """None: a single impact."""
     elements_per_contact_radius: Annotated[float, At("reference.elements_per_contact_radius")]
+    elements_per_thickness: Annotated[float, At("reference.elements_per_thickness")] = 2.0
+    """Quadratic ones, of the plate far from the contacts; of solid geometry only."""
     geometry: Annotated[Literal["axisymmetric", "solid"], At("reference.geometry")]
     element_order: Annotated[Literal[1, 2], At("reference.element_order")] = 2
     """1 linear, 2 quadratic; of solid geometry only."""

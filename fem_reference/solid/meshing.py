@@ -39,10 +39,28 @@ def rounded(radius: float) -> float:
 
 
 @dataclass(frozen=True)
+class RimEdges:
+    """The circles in which a plate's faces meet its rim, and the element size there."""
+
+    radius: float
+    """m"""
+    half: float
+    """Half the plate's thickness, m."""
+    least: float
+    """m"""
+
+    def expression(self, slope: float) -> str:
+        """Size that grows with the distance from them, for gmsh's MathEval."""
+        inwards = f"(Sqrt(x*x+y*y)-({self.radius!r}))"
+        across = f"(Fabs(z)-({self.half!r}))"
+        return f"{self.least!r}+{slope!r}*Sqrt({inwards}*{inwards}+{across}*{across})"
+
+
+@dataclass(frozen=True)
 class SizeField:
     """Element size h = min(largest, least + slope * max(0, d - zone)).
 
-    d is the distance from the nearest of the centres.
+    d is the distance from the nearest of the centres. At ``edges`` elements are smaller, too.
     """
 
     centres: tuple[tuple[float, float, float], ...]
@@ -53,6 +71,7 @@ class SizeField:
     slope: float
     largest: float
     """m"""
+    edges: RimEdges | None = None
 
     def expression(self) -> str:
         """For gmsh's MathEval."""
@@ -64,7 +83,10 @@ class SizeField:
         nearest = terms[0]
         for term in terms[1:]:
             nearest = f"Min({nearest},{term})"
-        return f"Min({self.largest!r},{self.least!r}+{self.slope!r}*{nearest})"
+        size = f"Min({self.largest!r},{self.least!r}+{self.slope!r}*{nearest})"
+        if self.edges is None:
+            return size
+        return f"Min({size},{self.edges.expression(self.slope)})"
 
 
 class Sized(Protocol):

@@ -103,6 +103,7 @@ pub fn scene() -> Scene {
         reference: ReferenceSettings {
             geometry: Geometry::Axisymmetric,
             elements_per_contact_radius: Some(12.0),
+            elements_per_thickness: None,
             elements_per_ring_radius: None,
             element_order: None,
             rigid: None,

@@ -123,6 +123,9 @@ pub struct ReferenceSettings {
     /// Elements across the contact radius at `paper` resolution; `None` for a seal seat.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elements_per_contact_radius: Option<f64>,
+    /// Elements through a plate's thickness at `paper` resolution, solid geometry only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elements_per_thickness: Option<f64>,
     /// Elements across the radius of the contact ring at `paper` resolution, seal seat only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elements_per_ring_radius: Option<f64>,
@@ -140,6 +143,7 @@ impl ReferenceSettings {
         Self {
             geometry,
             elements_per_contact_radius: None,
+            elements_per_thickness: None,
             elements_per_ring_radius: None,
             element_order: None,
             rigid: None,

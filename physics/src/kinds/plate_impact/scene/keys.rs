@@ -3,7 +3,7 @@
 use crate::kinds::body_keys::{CONTACT_ELEMENTS, INNER, OUTER, SERIES};
 use crate::scene::flight::{FLIGHT, PLATE_FLIGHT};
 use crate::scene::grammar::{
-    Bound, Field, Kind, MODELS, choice, one_way, only, optional, positive, pure, required,
+    Bound, Field, Kind, MODELS, choice, one_way, optional, positive, pure, required,
 };
 use crate::scene::quantity::Dimension;
 
@@ -84,7 +84,7 @@ static REDUCED: [Field; 2] = [
     optional("modes", Kind::Count(1, MAX_MODES as u64), "Number of modes of the plate"),
 ];
 
-static REFERENCE: [Field; 4] = [
+static REFERENCE: [Field; 5] = [
     optional(
         "geometry",
         Kind::Choice(&[choice("axisymmetric"), choice("solid")]),
@@ -95,24 +95,28 @@ static REFERENCE: [Field; 4] = [
         pure(CONTACT_ELEMENTS),
         "Elements across the contact radius at `paper` resolution; absent = 12, with solid geometry 3",
     ),
-    only(
-        &["solid"],
-        optional(
-            "element_order",
-            Kind::Count(1, 2),
-            "Order of the tetrahedra: 1 linear, 2 quadratic; absent = 2",
-        ),
+    optional(
+        "elements_per_thickness",
+        pure(THICKNESS_ELEMENTS),
+        "Elements through the plate's thickness at `paper` resolution, of solid geometry (linear ones: four times as many); at the edges of a rim that is held they are smaller by this factor once more; absent = 2",
     ),
-    only(
-        &["solid"],
-        optional(
-            "rigid",
-            Kind::Choice(&[choice("none"), choice("outer"), choice("inner"), choice("both")]),
-            "Spheres that are rigid",
-        )
-        .otherwise("none"),
+    optional(
+        "element_order",
+        Kind::Count(1, 2),
+        "Order of the tetrahedra of solid geometry: 1 linear, 2 quadratic; absent = 2",
     ),
+    optional(
+        "rigid",
+        Kind::Choice(&[choice("none"), choice("outer"), choice("inner"), choice("both")]),
+        "Spheres that are rigid, of solid geometry",
+    )
+    .otherwise("none"),
 ];
 
+/// Smallest and largest number of solid elements through a plate's thickness.
+const THICKNESS_ELEMENTS: Bound = Bound { low: Some((1.0, true)), high: Some((16.0, true)) };
+
+/// Default of `reference.elements_per_thickness`.
+pub(super) const THROUGH: f64 = 2.0;
 /// Default of `reference.elements_per_contact_radius` with axisymmetric geometry (bilinear elements).
 pub(super) const DEFAULT_ELEMENTS: f64 = 12.0;

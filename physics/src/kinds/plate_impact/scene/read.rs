@@ -1,7 +1,7 @@
 //! From the checked values of a plate impact to its types.
 
 use super::PlateImpact;
-use super::keys::DEFAULT_ELEMENTS;
+use super::keys::{DEFAULT_ELEMENTS, THROUGH};
 use crate::Result;
 use crate::kinds::body_keys::SOLID_ELEMENTS;
 use crate::kinds::body_reading;
@@ -81,13 +81,32 @@ pub(super) fn reference(settings: &Node, centred: bool) -> Result<ReferenceSetti
         None if centred => Geometry::Axisymmetric,
         None => Geometry::Solid,
     };
-    let default = if geometry == Geometry::Solid { SOLID_ELEMENTS } else { DEFAULT_ELEMENTS };
     let elements = settings.optional_number("elements_per_contact_radius")?;
+    let through = settings.optional_number("elements_per_thickness")?;
+    let element_order = settings.optional_count("element_order")?;
+    let rigid = if settings.text("rigid")? == "none" { None } else { Some(settings.word("rigid")?) };
+    if geometry == Geometry::Axisymmetric {
+        let given = [
+            ("elements_per_thickness", through.is_some()),
+            ("element_order", element_order.is_some()),
+            ("rigid", rigid.is_some()),
+        ];
+        if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
+            return Err(refused(
+                &format!("`reference.{key}` belongs to solid geometry, but the reference is axisymmetric"),
+                "leave it out, or set `reference.geometry` to \"solid\"",
+            ));
+        }
+        return Ok(ReferenceSettings {
+            elements_per_contact_radius: Some(elements.unwrap_or(DEFAULT_ELEMENTS)),
+            ..ReferenceSettings::of(geometry)
+        });
+    }
     Ok(ReferenceSettings {
-        geometry,
-        elements_per_contact_radius: Some(elements.unwrap_or(default)),
-        elements_per_ring_radius: None,
-        element_order: settings.optional_count("element_order")?,
-        rigid: if settings.text("rigid")? == "none" { None } else { Some(settings.word("rigid")?) },
+        elements_per_contact_radius: Some(elements.unwrap_or(SOLID_ELEMENTS)),
+        elements_per_thickness: Some(through.unwrap_or(THROUGH)),
+        element_order,
+        rigid,
+        ..ReferenceSettings::of(geometry)
     })
 }

@@ -56,6 +56,7 @@ pub fn scene(name: &str, setup: PlateImpact) -> Scene {
         reference: ReferenceSettings {
             geometry: Geometry::Axisymmetric,
             elements_per_contact_radius: Some(12.0),
+            elements_per_thickness: None,
             elements_per_ring_radius: None,
             element_order: None,
             rigid: None,
