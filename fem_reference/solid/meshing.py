@@ -24,6 +24,8 @@ DELAUNAY = 1
 """gmsh's classic algorithm. HXT makes slightly better elements, but other ones at every call."""
 
 
+TRIES = 5
+"""Meshes of a body, until one has no flat element."""
 RADIUS_STEP = 1.04
 """Ratio of neighbouring contact radii for which a mesh is made again."""
 
@@ -144,12 +146,13 @@ def _snap(points: Floats, planes: Sequence[int], length: float) -> None:
 
 
 def _mended(name: str, build: Callable[[], None], size: SizeField) -> tuple[Floats, Ints]:
-    """As `generate`; if that leaves a flat element, once more with slightly smaller ones."""
-    points, corners = generate(name, build, size)
-    if qualities(points, corners).min() > MINIMUM_QUALITY:
-        return points, corners
-    smaller = replace(size, least=0.99 * size.least, largest=0.99 * size.largest)
-    return generate(name, build, smaller)
+    """As `generate`; while that leaves a flat element, again with slightly smaller ones."""
+    for _ in range(TRIES):
+        points, corners = generate(name, build, size)
+        if qualities(points, corners).min() > MINIMUM_QUALITY:
+            break
+        size = replace(size, least=0.99 * size.least, largest=0.99 * size.largest)
+    return points, corners
 
 
 def generate_part(

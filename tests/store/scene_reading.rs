@@ -147,8 +147,12 @@ fn settings_of_solid_elements_belong_to_solid_geometry() {
     // Absent geometry is axisymmetric.
     for geometry in ["geometry = \"axisymmetric\"", ""] {
         let text = edited("geometry = \"axisymmetric\"", &format!("{geometry}\nrigid = \"both\""));
-        refuses(&text, 33, &["reference.rigid", "geometry `axisymmetric`", "only to `solid`"]);
+        refuses(&text, 33, &["reference.rigid", "belongs to solid geometry"]);
     }
+    // one that is off-centre or oblique is solid
+    let oblique = edited("geometry = \"axisymmetric\"", "elements_per_thickness = 3")
+        .replace("speed    = \"550 mm/s\"", "speed    = \"550 mm/s\"\nangle    = \"10 deg\"");
+    assert_eq!(parse(&oblique).reference.elements_per_thickness, Some(3.0));
     refuses(
         &edited("geometry = \"axisymmetric\"", "geometry = \"solid\"\nelement_order = 3"),
         33,

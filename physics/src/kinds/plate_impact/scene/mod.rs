@@ -12,6 +12,7 @@ pub(in crate::kinds) use soundness::slenderness;
 use super::NAME;
 use crate::error::Result;
 use crate::material::Material;
+use crate::scene::collision::Collision;
 use crate::scene::grammar::Field;
 use crate::scene::parts::is_zero;
 use crate::scene::values::Node;
@@ -93,6 +94,10 @@ impl Scene {
 impl Language for super::Kind {
     fn keys(&self) -> Vec<Field> {
         keys::keys()
+    }
+
+    fn collisions(&self, root: &Node) -> Vec<Collision> {
+        soundness::key_collisions(root)
     }
 
     fn read(&self, root: &Node, materials: &Node) -> Result<(Setup, ReferenceSettings)> {

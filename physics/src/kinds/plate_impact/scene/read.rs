@@ -86,17 +86,6 @@ pub(super) fn reference(settings: &Node, centred: bool) -> Result<ReferenceSetti
     let element_order = settings.optional_count("element_order")?;
     let rigid = if settings.text("rigid")? == "none" { None } else { Some(settings.word("rigid")?) };
     if geometry == Geometry::Axisymmetric {
-        let given = [
-            ("elements_per_thickness", through.is_some()),
-            ("element_order", element_order.is_some()),
-            ("rigid", rigid.is_some()),
-        ];
-        if let Some((key, _)) = given.into_iter().find(|(_, given)| *given) {
-            return Err(refused(
-                &format!("`reference.{key}` belongs to solid geometry, but the reference is axisymmetric"),
-                "leave it out, or set `reference.geometry` to \"solid\"",
-            ));
-        }
         return Ok(ReferenceSettings {
             elements_per_contact_radius: Some(elements.unwrap_or(DEFAULT_ELEMENTS)),
             ..ReferenceSettings::of(geometry)

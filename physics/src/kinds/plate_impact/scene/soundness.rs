@@ -5,7 +5,8 @@ use super::PlateImpact;
 use crate::flight::Chamber;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
-use crate::scene::{Bodies, Flight, Flyer, Material, Plate, Shape};
+use crate::scene::values::Node;
+use crate::scene::{Bodies, Flight, Flyer, Geometry, Material, Plate, Shape};
 
 /// Least and largest thickness of a plate over its radius. Of a longer rod next to nothing reaches the far face before all is over.
 const SLENDERNESS: [f64; 2] = [1e-6, 10.0];
@@ -14,6 +15,9 @@ const LENGTH: [f64; 2] = [1e-6, 1.0];
 /// Longest time in which a stack charges, in radians of its slowest vibration: charged more slowly it presses on the plate and does not
 /// strike it.
 const SLOWEST_CHARGE: f64 = 1e5;
+
+/// Keys of `reference` that solid elements alone have.
+const SOLID_KEYS: [&str; 3] = ["elements_per_thickness", "element_order", "rigid"];
 
 /// That a plate is one: the waves and contacts of any other live on scales that no run brings together.
 pub(in crate::kinds) fn slenderness(plate: &Plate) -> Rule {
@@ -28,6 +32,26 @@ pub(in crate::kinds) fn slenderness(plate: &Plate) -> Rule {
         ),
         help: "is one of them in the wrong unit?",
     }
+}
+
+/// Settings of solid elements where the reference is axisymmetric.
+pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
+    let Some(reference) = root.optional_table("reference").ok().flatten() else { return Vec::new() };
+    let outer = root.table("outer").ok();
+    let is_beside =
+        |key: &str| outer.as_ref().is_some_and(|outer| outer.number(key).is_ok_and(|value| value != 0.0));
+    let is_centred = !(is_beside("offset") || is_beside("angle"));
+    let is_axisymmetric = match reference.optional_word::<Geometry>("geometry") {
+        Ok(Some(geometry)) => geometry == Geometry::Axisymmetric,
+        Ok(None) => is_centred,
+        Err(_) => false,
+    };
+    let refused = |key: &&str| Collision {
+        fields: vec![format!("reference.{key}").into()],
+        message: format!("`reference.{key}` belongs to solid geometry, but the reference is axisymmetric"),
+        help: "remove it, or set `reference.geometry` to \"solid\"",
+    };
+    SOLID_KEYS.iter().filter(|key| is_axisymmetric && reference.has(key)).map(refused).collect()
 }
 
 impl Bodies for PlateImpact {
