@@ -25,12 +25,14 @@ extern "C" fn check() {
 }
 
 /// Asks the processor: the standard library would repeat what the compiler was told.
+#[allow(unused_unsafe, reason = "safe in newer Rust")]
 fn has_instructions() -> bool {
     let has = |register: u32, bit: u32| register & (1 << bit) != 0;
-    if __cpuid(0).eax < 7 {
+    // SAFETY: every x86-64 processor has the instruction
+    let [leaves, basic, extended] = unsafe { [__cpuid(0).eax, __cpuid(1).ecx, __cpuid_count(7, 0).ebx] };
+    if leaves < 7 {
         return false;
     }
-    let (basic, extended) = (__cpuid(1).ecx, __cpuid_count(7, 0).ebx);
     let (fma, registers_are_kept, avx2) = (has(basic, 12), has(basic, 27), has(extended, 5));
     fma && registers_are_kept && avx2
 }
