@@ -7,9 +7,8 @@
 FROM rust:1.89-bookworm AS build
 WORKDIR /source
 COPY . .
-# the Python package's extension finds the symbols of the interpreter that loads it; Apple silicon may translate no AVX2
-RUN RUSTFLAGS="-C target-cpu=x86-64" PYO3_BUILD_EXTENSION_MODULE=1 \
-    cargo build --release --locked --package impactcheck --package impactcheck-python \
+# the Python package's extension finds the symbols of the interpreter that loads it
+RUN PYO3_BUILD_EXTENSION_MODULE=1 cargo build --release --locked --package impactcheck --package impactcheck-python \
     && strip target/release/impactcheck target/release/lib_core.so
 
 FROM python:3.12-slim-bookworm

@@ -78,8 +78,6 @@ pub mod fluid;
 pub mod kinds;
 pub mod material;
 pub mod numerics;
-#[cfg(all(target_arch = "x86_64", target_feature = "avx2"))]
-mod processor;
 pub mod result;
 pub mod scene;
 
