@@ -131,7 +131,8 @@ def size_fields(
             )
     # Elements per wavelength; linear tetrahedra are far too stiff in bending with fewer.
     per_wave = {1: 24.0, 2: 8.0}[order]
-    quadratic = {1: 0.25, 2: 1.0}[order]
+    # Size of an element over that of a quadratic one that bends as well.
+    relative = {1: 0.25, 2: 1.0}[order]
 
     def field(
         centres: tuple[tuple[float, float, float], ...],
@@ -142,7 +143,7 @@ def size_fields(
         return SizeField(centres, reach, least, slope, size, edges)
 
     half, ratio = 0.5 * plate.thickness, scene.elements_per_thickness
-    through = quadratic * plate.thickness / ratio
+    through = relative * plate.thickness / ratio
     # The stress is singular where a held rim meets the faces: with large elements the plate is too
     # stiff. One element through the thickness everywhere raised the first frequency by 0.9 %.
     at_rim = max(least, through / ratio / factor)

@@ -68,19 +68,22 @@ fn fluid(fluid: &Node, plate: &Plate) -> Result<Fluid> {
     })
 }
 
+/// Geometry of the reference of a plate impact that has an axis of symmetry, or has none.
+pub(super) fn geometry(settings: &Node, centred: bool) -> Result<Geometry> {
+    match settings.optional_word("geometry")? {
+        Some(Geometry::Axisymmetric) if !centred => Err(refused(
+            "`reference.geometry` is \"axisymmetric\", but `outer.offset` or `outer.angle` leaves no axis of symmetry",
+            "set it to \"solid\", or leave it out",
+        )),
+        Some(geometry) => Ok(geometry),
+        None if centred => Ok(Geometry::Axisymmetric),
+        None => Ok(Geometry::Solid),
+    }
+}
+
 /// Settings of the reference of a plate impact that has an axis of symmetry, or has none.
 pub(super) fn reference(settings: &Node, centred: bool) -> Result<ReferenceSettings> {
-    let geometry = match settings.optional_word("geometry")? {
-        Some(Geometry::Axisymmetric) if !centred => {
-            return Err(refused(
-                "`reference.geometry` is \"axisymmetric\", but `outer.offset` or `outer.angle` leaves no axis of symmetry",
-                "set it to \"solid\", or leave it out",
-            ));
-        }
-        Some(geometry) => geometry,
-        None if centred => Geometry::Axisymmetric,
-        None => Geometry::Solid,
-    };
+    let geometry = geometry(settings, centred)?;
     let elements = settings.optional_number("elements_per_contact_radius")?;
     let through = settings.optional_number("elements_per_thickness")?;
     let element_order = settings.optional_count("element_order")?;

@@ -2,6 +2,7 @@
 
 use super::super::NAME;
 use super::PlateImpact;
+use super::read::geometry;
 use crate::flight::Chamber;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
@@ -41,11 +42,8 @@ pub(super) fn key_collisions(root: &Node) -> Vec<Collision> {
     let is_beside =
         |key: &str| outer.as_ref().is_some_and(|outer| outer.number(key).is_ok_and(|value| value != 0.0));
     let is_centred = !(is_beside("offset") || is_beside("angle"));
-    let is_axisymmetric = match reference.optional_word::<Geometry>("geometry") {
-        Ok(Some(geometry)) => geometry == Geometry::Axisymmetric,
-        Ok(None) => is_centred,
-        Err(_) => false,
-    };
+    let is_axisymmetric =
+        geometry(&reference, is_centred).is_ok_and(|geometry| geometry == Geometry::Axisymmetric);
     let refused = |key: &&str| Collision {
         fields: vec![format!("reference.{key}").into()],
         message: format!("`reference.{key}` belongs to solid geometry, but the reference is axisymmetric"),
