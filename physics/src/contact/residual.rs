@@ -19,6 +19,7 @@
 //! equilibrium and only one. Where the polynomials of R cease to make it so the patch stays as it is and the contact goes
 //! on as a flat punch, F_i growing by its own: convex for certain.
 
+mod alone;
 mod state;
 
 pub use self::state::State;
@@ -34,8 +35,9 @@ const FARTHEST: f64 = 9.0;
 const TESTED: usize = 360;
 /// Halvings of the first of them where even there U is not convex.
 const HALVINGS: usize = 100;
-/// Places from one that is looked at to the next while U is convex by [`AMPLE`], of 1 under half-spaces alone.
-const STRIDE: usize = 15;
+/// Places from one that is looked at to the next where U is convex by 1, as under half-spaces alone, and less in proportion; between
+/// places of which one has less than [`AMPLE`] all are looked at.
+const STRIDE: f64 = 60.0;
 const AMPLE: f64 = 0.25;
 
 /// Residual flexibility of two contacts in terms of their approaches.
@@ -221,13 +223,14 @@ impl Residual {
     }
 }
 
-/// How many numbers from 1 to `most` come before the first that has no positive `margin`; between two that have much of it at most
-/// [`STRIDE`] apart all do.
+/// How many numbers from 1 to `most` come before the first that has no positive `margin`; between two that have much of it,
+/// as far apart as [`STRIDE`] has it, all do.
 fn farthest_positive(most: usize, margin: impl Fn(usize) -> f64) -> usize {
     let mut known = 0;
-    let mut before = AMPLE;
+    let mut before = 1.0;
     while known < most {
-        let next = (known + STRIDE).min(most);
+        let stride = (STRIDE * f64::max(before, AMPLE)) as usize;
+        let next = (known + stride).min(most);
         let after = margin(next);
         if before.min(after) < AMPLE
             && let Some(first) = (known + 1..next).find(|n| margin(*n) <= 0.0)
@@ -249,7 +252,7 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    const LAWS: [Hertz; 2] =
+    pub(super) const LAWS: [Hertz; 2] =
         [Hertz { stiffness: 1.5e10, tip_radius: 0.01 }, Hertz { stiffness: 0.9e10, tip_radius: 0.005 }];
 
     fn constant(flexibility: [[f64; 2]; 2]) -> Residual {
@@ -257,7 +260,7 @@ mod tests {
     }
 
     /// A residual that changes with the patches and whose table reaches to approaches of `depth` m.
-    fn varying(depth: f64) -> Residual {
+    pub(super) fn varying(depth: f64) -> Residual {
         let own = |i: usize, x: f64| [2e-9, 1e-9][i] / (1.0 + [0.3, 0.5][i] * x) - 0.4e-9;
         let mutual = |x: f64, y: f64| 6e-10 / (1.0 + 0.2 * x + 0.4 * y);
         let square = RADII.map(|r| r * r);

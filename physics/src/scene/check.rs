@@ -6,6 +6,7 @@ use super::grammar::{Bound, DEFAULT_GEOMETRY, Field, Kind, pure, required};
 use super::place::Place;
 use super::quantity::Dimension;
 use super::values::{Checked, PLACE, Values};
+use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -166,7 +167,7 @@ impl<'a> Checker<'a> {
             }
             (Kind::Texts(most), DeValue::Array(items)) => self.texts(place, value, items, *most),
             (Kind::Table(fields), DeValue::Table(table)) => {
-                Some(Checked::Table(self.table(place, table, fields)))
+                Some(Checked::Table(Arc::new(self.table(place, table, fields))))
             }
             (Kind::Tables(fields, most), DeValue::Array(items)) => {
                 self.list(place, value, items, fields, *most)
@@ -205,7 +206,7 @@ impl<'a> Checker<'a> {
             match value.get_ref() {
                 DeValue::Table(table) => {
                     let checked = self.table(&inner, table, fields);
-                    values.insert(key.get_ref().to_string(), Checked::Table(checked));
+                    values.insert(key.get_ref().to_string(), Checked::Table(Arc::new(checked)));
                 }
                 found => {
                     let message = format!("but it must be a table; found: {}", found.type_str());
@@ -219,7 +220,7 @@ impl<'a> Checker<'a> {
                 }
             }
         }
-        Some(Checked::Table(values))
+        Some(Checked::Table(Arc::new(values)))
     }
 
     pub(super) fn list(
@@ -297,7 +298,7 @@ impl<'a> Checker<'a> {
             let checked = self.value(&Place { path: &path, span: key.span() }, entry, field);
             found.extend(checked.map(|checked| (key.get_ref().to_string(), checked)));
         }
-        Some(Checked::Table(found))
+        Some(Checked::Table(Arc::new(found)))
     }
 
     /// Reads a name, or three coordinates in m.

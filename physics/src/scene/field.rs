@@ -144,7 +144,7 @@ fn has(values: &Values, path: &str) -> bool {
     tables
         .split_terminator('.')
         .try_fold(values, |values, table| match values.get(table) {
-            Some(Checked::Table(inner)) => Some(inner),
+            Some(Checked::Table(inner)) => Some(&**inner),
             _ => None,
         })
         .is_some_and(|values| values.contains_key(key))
@@ -193,8 +193,8 @@ fn collect(
         Some(Checked::Text(text)) => Some(text.as_str()),
         _ => None,
     };
-    let table = |values: Option<&'_ Values>, key: &str| match values.and_then(|v| v.get(key)) {
-        Some(Checked::Table(inner)) => Some(inner.clone()),
+    let table = |key: &str| match values.and_then(|v| v.get(key)) {
+        Some(Checked::Table(inner)) => Some(&**inner),
         _ => None,
     };
     let kind = text("kind").map(str::to_owned);
@@ -219,17 +219,17 @@ fn collect(
                 }
             }
             Kind::Table(inner) => {
-                let there = table(values, field.key);
+                let there = table(field.key);
                 // one number alone does not make a table that has to have others
                 if there.is_some() || inner.iter().all(|f| !f.required) {
-                    collect(inner, there.as_ref(), keys, found);
+                    collect(inner, there, keys, found);
                 }
             }
             Kind::TableOf(inner) => {
-                for (name, entry) in table(values, field.key).unwrap_or_default() {
+                for (name, entry) in table(field.key).into_iter().flatten() {
                     if let Checked::Table(entry) = entry {
-                        keys.push(name);
-                        collect(inner, Some(&entry), keys, found);
+                        keys.push(name.clone());
+                        collect(inner, Some(entry), keys, found);
                         keys.pop();
                     }
                 }

@@ -11,6 +11,7 @@ use super::values::Node;
 use super::values::{Checked, Values};
 use super::{Distribution, Field, Grammar, Rejected, Scene, unknown_name};
 use crate::{Error, Result};
+use std::sync::Arc;
 
 /// A checked scene file, open to variation.
 ///
@@ -146,7 +147,7 @@ impl Template {
         if vibration.remove("file").is_none() {
             return;
         }
-        for (key, value) in values {
+        for (key, value) in &**values {
             if let Checked::Numbers(samples) = value {
                 vibration.insert(key.clone(), samples.clone().into());
             }
@@ -181,9 +182,9 @@ fn set(values: &mut Values, keys: &[String], value: Checked) {
             values.insert(key.clone(), value);
         }
         [key, rest @ ..] => {
-            let inner = values.entry(key.clone()).or_insert_with(|| Checked::Table(Values::new()));
+            let inner = values.entry(key.clone()).or_insert_with(|| Checked::Table(Arc::default()));
             match (inner, value) {
-                (Checked::Table(inner), value) => set(inner, rest, value),
+                (Checked::Table(inner), value) => set(Arc::make_mut(inner), rest, value),
                 (Checked::Numbers(list), Checked::Number(number)) => {
                     if let Some(entry) = index(rest).and_then(|i| list.get_mut(i)) {
                         *entry = number;

@@ -5,6 +5,7 @@ use super::quantity;
 use crate::{Error, Result};
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A value that has passed its checks; quantities are in SI.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,7 +16,8 @@ pub(crate) enum Checked {
     Text(String),
     Texts(Vec<String>),
     Flag(bool),
-    Table(Values),
+    /// Shared by the variants of a scene that do not change it.
+    Table(Arc<Values>),
     Tables(Vec<Values>),
 }
 

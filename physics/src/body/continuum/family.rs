@@ -11,6 +11,7 @@ use super::unit::{MeshedPlate, UnitSphere, patches, widest_patch};
 use crate::contact::WHOLE;
 use crate::error::Result;
 use crate::numerics::chebyshev::{Chebyshev, blend};
+use crate::numerics::vectors::dot;
 use crate::scene::{Edge, Material, Plate};
 use std::f64::consts::PI;
 
@@ -136,7 +137,7 @@ impl PlateFamily {
                 |i: usize| blend(&of_flexibilities, self.plates.iter().map(|plate| &plate.mutual[m][i]));
             (0..first.patches.nodes.len()).map(row).collect()
         };
-        let shape = |i: usize| blend(&of_shapes, self.plates.iter().map(|plate| &plate.shapes[i]));
+        let shape = |k: usize| blend(&of_shapes, self.plates.iter().map(|plate| &plate.shapes[k]));
         MeshedPlate {
             edge: first.edge,
             poisson_ratio,
@@ -144,7 +145,7 @@ impl PlateFamily {
             modes: first.modes,
             patches: patches(self.widest * thickness),
             omega: blend(&of_speeds, self.plates.iter().map(|plate| &plate.omega)),
-            shapes: (0..first.patches.nodes.len()).map(shape).collect(),
+            shapes: (0..first.shapes.len()).map(shape).collect(),
             own: [own(0), own(1)],
             mutual: [mutual(0), mutual(1)],
             degrees_of_freedom: first.degrees_of_freedom,
@@ -154,10 +155,9 @@ impl PlateFamily {
 
 /// Gives the shapes of `plate` the signs they have in `neighbour`.
 fn align(plate: &mut MeshedPlate, neighbour: &MeshedPlate) {
-    for k in 0..plate.omega.len() {
-        let along: f64 = plate.shapes.iter().zip(&neighbour.shapes).map(|(a, b)| a[k] * b[k]).sum();
-        if along < 0.0 {
-            plate.shapes.iter_mut().for_each(|shape| shape[k] = -shape[k]);
+    for (shape, beside) in plate.shapes.iter_mut().zip(&neighbour.shapes) {
+        if dot(shape, beside) < 0.0 {
+            shape.iter_mut().for_each(|value| *value = -*value);
         }
     }
 }

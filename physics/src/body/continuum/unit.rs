@@ -44,7 +44,7 @@ pub(super) struct MeshedPlate {
     pub(super) patches: Chebyshev,
     /// The `modes` + 1 lowest in bending, then in longitudinal motion. Shape (2 (modes + 1)).
     pub(super) omega: Vec<f64>,
-    /// Mass-normalised, of the face turned outwards. Shape (nodes, 2 (modes + 1)).
+    /// Mass-normalised, of the face turned outwards. Shape (2 (modes + 1), nodes).
     pub(super) shapes: Vec<Vec<f64>>,
     /// Static flexibility of a face without the half-space and the modes [`Self::apart`], by finite elements and of the layer. Shape (2, nodes).
     pub(super) own: [Vec<f64>; 2],
@@ -100,7 +100,7 @@ impl MeshedPlate {
     fn take_out_modes(&mut self) {
         let nodes = 0..self.patches.nodes.len();
         for (i, j) in nodes.clone().flat_map(|i| nodes.clone().map(move |j| (i, j))) {
-            let term = |k: usize| self.shapes[i][k] * self.shapes[j][k] / self.omega[k].powi(2);
+            let term = |k: usize| self.shapes[k][i] * self.shapes[k][j] / self.omega[k].powi(2);
             let compliance: f64 = self.apart().map(term).sum();
             for (own, mutual) in self.own.iter_mut().zip(&mut self.mutual) {
                 mutual[i][j] -= compliance;
@@ -133,10 +133,16 @@ impl MeshedPlate {
         let weights = patch_radius.map(|a| WEIGHTED.map(|r| self.patches.weights(square(r * a))));
         let amplitude = 1.0 / (material.density * radius.powi(3)).sqrt();
         let speed = (material.youngs_modulus / material.density).sqrt() / radius;
-        let shapes = weights.each_ref().map(|weights| weights.each_ref().map(|w| blend(w, &self.shapes)));
+        let by_node = |node: usize| weights.each_ref().map(|of| of.each_ref().map(|w| w[node]));
+        let by_node: Vec<[[f64; WEIGHTED.len()]; 2]> = (0..self.patches.nodes.len()).map(by_node).collect();
         let shape = |k: usize| {
+            let mut sums = [[0.0; WEIGHTED.len()]; 2];
+            for (weights, value) in by_node.iter().zip(&self.shapes[k]) {
+                let pairs = sums.as_flattened_mut().iter_mut().zip(weights.as_flattened());
+                pairs.for_each(|(sum, weight)| *sum += weight * value);
+            }
             let parity = if k <= self.modes { Parity::Bending } else { Parity::Longitudinal };
-            [0, 1].map(|i| shapes[i].each_ref().map(|shape| amplitude * sign(parity, i) * shape[k]))
+            [0, 1].map(|i| sums[i].map(|sum| amplitude * sign(parity, i) * sum))
         };
         let mut flexibility = self.flexibility(&weights, 1.0 / (material.youngs_modulus * radius));
         for k in self.apart() {
@@ -187,16 +193,13 @@ pub(super) fn patches(widest: f64) -> Chebyshev {
 /// Loads of unit forces over patches, in the motions of [`Halves::each`]. Shape (2, patches, unknowns).
 type Loads = [Vec<Vec<f64>>; 2];
 
-/// The shapes of `spectrum` over the patches of the `loads`, of the face turned outwards. Shape (patches, modes).
+/// The shapes of `spectrum` over the patches of the `loads`, of the face turned outwards. Shape (modes, patches).
 fn weighted(spectrum: &[SpectrumEntry], [bending, longitudinal]: &Loads) -> Vec<Vec<f64>> {
-    let over = |(bending, longitudinal): (&Vec<f64>, &Vec<f64>)| {
-        let at = |entry: &SpectrumEntry| {
-            let load = if entry.parity == Parity::Bending { bending } else { longitudinal };
-            dot(load, &entry.shape) / SQRT_2
-        };
-        spectrum.iter().map(at).collect()
+    let over = |entry: &SpectrumEntry| {
+        let loads = if entry.parity == Parity::Bending { bending } else { longitudinal };
+        loads.iter().map(|load| dot(load, &entry.shape) / SQRT_2).collect()
     };
-    bending.iter().zip(longitudinal).map(over).collect()
+    spectrum.iter().map(over).collect()
 }
 
 /// [`MeshedPlate::own`] and [`MeshedPlate::mutual`] of patches of the `radii` under their `loads`.

@@ -97,8 +97,7 @@ impl<'a> EvenContacts<'a> {
         mut local: [f64; 2],
     ) -> Option<([f64; 2], [f64; 2])> {
         for _ in 0..MOST_STEPS {
-            let (next, force) =
-                residual.state(self.laws, local).newton_with_forces(self.flexibility, free, local)?;
+            let (next, force) = residual.newton(self.laws, self.flexibility, free, local)?;
             let before = std::mem::replace(&mut local, next);
             if is_found(before, local, SMALL_OF_PATCHES) {
                 return Some((local, force));

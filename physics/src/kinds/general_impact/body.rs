@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Number of the method that makes meshes, part of their keys: raise it when one comes out otherwise.
 const MESH_REVISION: u32 = 4;
@@ -264,6 +264,7 @@ pub(super) fn place(node: &Node, key: &str) -> Result<Option<BodyPlace>> {
 /// A sentence about the file.
 pub(super) fn find_file(values: &mut Values, source_name: &str) -> std::result::Result<(), String> {
     let Some(Checked::Table(body)) = values.get_mut("body") else { return Ok(()) };
+    let body = Arc::make_mut(body);
     let Some(Checked::Text(name)) = body.get("file") else { return Ok(()) };
     let path = Path::new(source_name).parent().unwrap_or(Path::new("")).join(name);
     let content = content(&path).map_err(|why| format!("`body.file` is \"{name}\", {why}"))?;

@@ -35,14 +35,11 @@ impl Predictor {
     }
 
     /// As [`Predictor::of`], to a few percent where both contacts press alike: patches that are 3 % wider change no force by more than
-    /// 3e-4. A contact that presses much less is known to a half, its patch to a quarter: it takes a better look.
-    pub(super) fn rough(system: &System) -> Result<Self> {
-        let Some([outer, inner]) = impulse_splitting::run(system) else { return Self::of(system) };
-        if inner.force_peak < WEAK * outer.force_peak || inner.force_peak == 0.0 {
-            return Self::of(system);
-        }
+    /// 3e-4. `None` if a contact presses much less: it is known to a half, its patch to a quarter.
+    pub(super) fn rough(system: &System) -> Option<Self> {
+        let [outer, inner] = impulse_splitting::run(system)?;
         let of = |contact: SplittingPeak| (contact.force_peak, contact.impulse);
-        Ok(Self::from(system, of(outer), Some(of(inner))))
+        (inner.force_peak > WEAK * outer.force_peak).then(|| Self::from(system, of(outer), Some(of(inner))))
     }
 
     /// From force peaks in N and impulses in N s.

@@ -14,6 +14,9 @@ use crate::kinds::{Series, SeriesModel};
 use crate::scene::DEFAULT_MODES;
 use crate::scene::{Model, Plate, Scene};
 
+/// Modes of the plate in a rough first look: it errs by as much with twice as many.
+const ROUGH_MODES: usize = 8;
+
 /// Eigenproblems that are not solved again, and, where shapes recur, bodies that are not meshed again.
 #[derive(Debug)]
 pub struct SharedBodies {
@@ -72,8 +75,11 @@ impl SharedBodies {
         if self.continuum.is_none() {
             return Predictor::of(&kirchhoff_system(setup, DEFAULT_MODES, &self.kirchhoff)?);
         }
-        let plate = self.kirchhoff.initial_modes(&setup.plate, DEFAULT_MODES)?;
-        Predictor::rough(&join(setup, plate, [0.0; 2])?)
+        let with = |modes| join(setup, self.kirchhoff.initial_modes(&setup.plate, modes)?, [0.0; 2]);
+        match Predictor::rough(&with(ROUGH_MODES)?) {
+            Some(predictor) => Ok(predictor),
+            None => Predictor::of(&with(DEFAULT_MODES)?),
+        }
     }
 
     /// As [`ModesAlong::new`] on the default mesh, for model C.

@@ -7,6 +7,7 @@ use crate::scene::values::{Checked, Values};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Its columns with their SI units, in any order.
 const COLUMNS: [(&str, Dimension); 2] =
@@ -19,6 +20,7 @@ const COLUMNS: [(&str, Dimension); 2] =
 /// A clause about the file, with line and value.
 pub(in crate::scene) fn with_record(values: &mut Values, source_name: &str) -> Result<(), String> {
     let Some(Checked::Table(vibration)) = values.get_mut("vibration") else { return Ok(()) };
+    let vibration = Arc::make_mut(vibration);
     let Some(Checked::Text(name)) = vibration.remove("file") else { return Ok(()) };
     let path = Path::new(source_name).parent().unwrap_or(Path::new("")).join(&name);
     let text = text_of(&path).map_err(|why| format!("`vibration.file` is \"{name}\", {why}"))?;
