@@ -1,14 +1,15 @@
 //! Kernels of the reduced models, by criterion: `cargo bench --bench kernels`.
 
-use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use impactcheck::body::cache::Cache;
 use impactcheck::body::kirchhoff::UnitPlate;
 use impactcheck::contact::{Hertz, PatchFlexibility, PatchTable, RADII, Residual};
+use impactcheck::kinds::Series;
 use impactcheck::kinds::plate_impact::reduced::Reduced;
 use impactcheck::kinds::plate_impact::shared::SharedBodies;
 use impactcheck::kinds::seal_seat::{SeatMesh, SeatModel};
 use impactcheck::numerics::duhamel::Oscillator;
-use impactcheck::scene::{Edge, Model, Scene};
+use impactcheck::scene::{Edge, Model, Scene, Template};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -111,17 +112,25 @@ fn friction(c: &mut Criterion) {
     }
 }
 
-/// A point of a sweep: the scene's model from known modes, and its impact.
+/// A point of a sweep to 1e-3: the model of a scene whose speed and radius are not those of the points before, and its impact.
 fn sweep_point(c: &mut Criterion) {
-    let (scene, plates) = (scene("", ""), SharedBodies::default());
-    Reduced::in_series(scene.clone(), Model::B, Some(16), &plates).expect("modes that are known from now on");
-    c.bench_function("sweep_point", |b| {
-        b.iter_batched(
-            || scene.clone(),
-            |scene| Reduced::in_series(scene, Model::B, Some(16), &plates).and_then(|r| r.point(1e-5)),
-            BatchSize::SmallInput,
-        );
-    });
+    let varied = [("outer.speed", [0.3, 0.9]), ("outer.radius", [6e-3, 14e-3])];
+    let template = Template::parse("scene.toml", SCENE).expect("a valid scene");
+    let fields = varied.map(|(name, _)| template.field(name).expect("a field"));
+    let setup = template.scene().plate_impact().expect("a plate");
+    let bodies = SharedBodies::for_varied(varied, setup, 20_000);
+    let mut group = c.benchmark_group("sweep_point");
+    for model in [Model::A, Model::B, Model::C] {
+        let mut share = 0.0;
+        let mut solve = || {
+            share = (share + 0.618) % 1.0;
+            let number = |k: usize| (&fields[k], varied[k].1[0] + share * (varied[k].1[1] - varied[k].1[0]));
+            let scene = template.with(&[number(0), number(1)]).expect("a valid scene");
+            bodies.model(scene, model, None).and_then(|model| model.point(1e-3)).expect("an impact")
+        };
+        solve();
+        group.bench_function(model.to_string(), |b| b.iter(&mut solve));
+    }
 }
 
 criterion_group! {
