@@ -155,8 +155,8 @@ impl PlateFamily {
 
 /// Gives the shapes of `plate` the signs they have in `neighbour`.
 fn align(plate: &mut MeshedPlate, neighbour: &MeshedPlate) {
-    for (shape, beside) in plate.shapes.iter_mut().zip(&neighbour.shapes) {
-        if dot(shape, beside) < 0.0 {
+    for (shape, known) in plate.shapes.iter_mut().zip(&neighbour.shapes) {
+        if dot(shape, known) < 0.0 {
             shape.iter_mut().for_each(|value| *value = -*value);
         }
     }
