@@ -12,9 +12,9 @@ pub fn final_velocities(system: &System, fluid: Option<&FluidForces>, h: f64, st
     let mut rate = |state: &[f64]| -> Vec<f64> {
         let (q, v) = state.split_at(n);
         let y = system.modal_approach(q);
-        let (_, forces) = system.contact(y, y).expect("equilibrium");
+        let (local, forces) = system.contact(y, y).expect("equilibrium");
         if let Some(fluid) = fluid {
-            fluid.evaluate(q, v, &mut load);
+            fluid.evaluate(q, v, system.tip_contact(local), &mut load);
         }
         let acceleration = (0..n).map(|k| {
             let o = system.oscillators[k];

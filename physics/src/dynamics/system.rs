@@ -14,6 +14,7 @@ use crate::actuator::circuit::{Account, Circuit};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::contact::{Hertz, PatchFlexibility, Residual};
+use crate::fluid::TipContact;
 use crate::material::Material;
 use crate::numerics::duhamel::{Feed, Oscillator};
 use crate::result::Drive;
@@ -400,6 +401,13 @@ impl System {
             None => Some((y, [self.laws[0].force(y[0]), self.laws[1].force(y[1])])),
             Some(residual) => residual.solve(&self.laws, y, guess),
         }
+    }
+
+    /// Contact of the inner body as a film around it sees it, with the patches `local` in m.
+    pub fn tip_contact(&self, local: [f64; 2]) -> TipContact {
+        let per_approach =
+            self.residual.map_or(1.0, |residual| residual.rates(&self.laws, local, [0.0, 1.0]).0[1]);
+        TipContact { patch: local[1], per_approach }
     }
 
     /// What the contacts add to displacement in m and velocity in m/s of the plate's centre, with the patches `p` in m, the rates of

@@ -1,6 +1,7 @@
 //! Deflection of the plate's inner face under the film: mode shapes on equal steps of r, cubic between them.
 
-use super::film::Profile;
+use super::Indentation;
+use super::film::{Profile, Ring};
 
 /// Steps of the table from the axis to the edge of the film; the highest modes of a thin plate have some 5 waves
 /// on this length.
@@ -83,12 +84,18 @@ impl Deflection {
         }
     }
 
-    /// Adds `loads` in N at the radii `radius` as generalised forces on the modes, N kg^(-1/2). It is the transpose
+    /// Value on the axis of every shape. Shape (modes).
+    pub fn shapes_on_axis(&self) -> &[f64] {
+        let modes = self.modes();
+        &self.by_radius[modes..2 * modes]
+    }
+
+    /// Adds `loads`, radii in m and forces in N, as generalised forces on the modes, N kg^(-1/2). It is the transpose
     /// of [`Deflection::sum`] and [`Deflection::value`]: loads and motions give the same power on either side.
-    pub fn generalised(&self, radius: &[f64], loads: &[f64], forces: &mut [f64]) {
+    pub fn generalised(&self, loads: impl Iterator<Item = (f64, f64)>, forces: &mut [f64]) {
         let mut table = [0.0; STEPS + 3];
-        for (r, load) in radius.iter().zip(loads) {
-            let (index, weights) = self.stencil(*r);
+        for (r, load) in loads {
+            let (index, weights) = self.stencil(r);
             for (entry, weight) in table[index..].iter_mut().zip(weights) {
                 *entry += weight * load;
             }
@@ -101,23 +108,48 @@ impl Deflection {
     }
 }
 
-/// Gap between the deflected plate and the inner body.
+/// Gap between the deflected plate and the inner body around their contact.
 pub struct PlateProfile<'a> {
-    /// Shapes of the plate.
-    pub deflection: &'a Deflection,
-    /// Deflection and its rate, as [`Deflection::sum`] gives them, in m and m/s.
-    pub plate: [&'a [f64]; 2],
-    /// Distance of the inner body's pole from the undeflected plate in m, and its rate in m/s.
-    pub distance: [f64; 2],
+    deflection: &'a Deflection,
+    /// Deflection of the plate and its rate, as [`Deflection::sum`] gives them, in m and m/s.
+    plate: [&'a [f64]; 2],
+    /// Rate in m/s at which the bodies part on the axis.
+    parting: f64,
+    /// The plate's deflection and rate on the axis.
+    centre: [f64; 2],
+    indentation: Indentation,
+}
+
+impl<'a> PlateProfile<'a> {
+    /// Of a `plate` with a deflection and a rate as [`Deflection::sum`] gives them, in m and m/s, and an inner body of `velocity` m/s
+    /// towards it.
+    pub fn new(
+        deflection: &'a Deflection,
+        plate: [&'a [f64]; 2],
+        velocity: f64,
+        indentation: Indentation,
+    ) -> Self {
+        let centre = plate.map(|table| deflection.value(table, 0.0));
+        Self { deflection, plate, parting: centre[1] - velocity, centre, indentation }
+    }
 }
 
 impl Profile for PlateProfile<'_> {
     fn gap(&self, r: f64) -> f64 {
-        self.distance[0] + self.deflection.value(self.plate[0], r)
+        self.indentation.gap(r) + self.deflection.value(self.plate[0], r) - self.centre[0]
     }
 
-    fn rate(&self, r: f64) -> f64 {
-        self.distance[1] + self.deflection.value(self.plate[1], r)
+    fn rate(&self, ring: Ring) -> f64 {
+        let plate = self.deflection.value(self.plate[1], ring.radius());
+        self.closing(ring) * self.parting + plate - self.centre[1]
+    }
+
+    fn patch(&self) -> f64 {
+        self.indentation.square()
+    }
+
+    fn closing(&self, ring: Ring) -> f64 {
+        self.indentation.closing(ring)
     }
 }
 
@@ -139,7 +171,7 @@ mod tests {
         }
         let loads = [1.0, -2.0, 3.0, 0.5, 0.1, 7.0];
         let mut forces = [0.0; 2];
-        deflection.generalised(&radius, &loads, &mut forces);
+        deflection.generalised(radius.into_iter().zip(loads), &mut forces);
         let power: f64 = radius.iter().zip(loads).map(|(r, p)| p * deflection.value(&table, *r)).sum();
         assert_relative_eq!(2.0 * forces[0] + 0.5 * forces[1], power, max_relative = 1e-12);
     }

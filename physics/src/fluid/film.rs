@@ -3,7 +3,7 @@
 //! by finite volumes in r.
 //!
 //! The pressure is that of the rim, 0, at the edge of the film, and nothing flows through the axis. Where the bodies
-//! overlap there is no film: its domain begins at the edge of the overlap, through which nothing flows either. The
+//! touch there is no film: its domain begins at the edge of the contact patch, through which nothing flows either. The
 //! flow resistance is that of the gap h* = max(h, minimal gap): finite for every gap, with what is squeezed out
 //! being the true dh/dt. So the film takes power p dh/dt from the bodies at exactly the rate at which it
 //! dissipates it, h*^3/(12 mu) (dp/dr)^2, cell by cell: the film can't feed the motion, whatever the gap.
@@ -14,14 +14,47 @@
 //! sqrt(2 R h) of the pressure and grows outwards, and the force is a smooth function of the motion.
 
 use super::viscosity::Viscosity;
+use super::{Indentation, TipContact};
 use std::f64::consts::PI;
 
-/// Gap of the film and its rate as functions of the radius r in m, without the curvature of the inner body.
+/// Gap of the film and its rate, without the curvature of the inner body.
 pub trait Profile {
-    /// Gap at r in m: negative where the bodies overlap.
+    /// Gap at the radius r in m: negative where the bodies overlap.
     fn gap(&self, r: f64) -> f64;
-    /// Rate of the gap at r in m/s.
-    fn rate(&self, r: f64) -> f64;
+    /// Mean rate of the gap in `ring`, m/s.
+    fn rate(&self, ring: Ring) -> f64;
+    /// Squared radius of the contact patch in m^2, 0 if the bodies do not touch on the axis.
+    fn patch(&self) -> f64 {
+        0.0
+    }
+    /// Mean closing speed of the gap in `ring` per closing speed of the bodies.
+    fn closing(&self, _: Ring) -> f64 {
+        1.0
+    }
+}
+
+/// A cell of the film.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ring {
+    /// Squares of the inner and the outer radius, m^2.
+    pub squares: [f64; 2],
+}
+
+impl Ring {
+    /// Square of the radius that halves its area, m^2.
+    fn middle(&self) -> f64 {
+        0.5 * (self.squares[0] + self.squares[1])
+    }
+
+    /// Radius that halves its area, m.
+    pub fn radius(&self) -> f64 {
+        self.middle().sqrt()
+    }
+
+    /// Area in m^2.
+    pub fn area(&self) -> f64 {
+        PI * (self.squares[1] - self.squares[0])
+    }
 }
 
 /// Film between the plate and an inner body with a spherical tip.
@@ -37,31 +70,31 @@ pub struct Film {
 /// Loads of the film at the centres of its cells.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FilmForces {
-    /// Radius of the cell's centre in m. Shape (cells), or empty where there is no film.
-    pub radius: Vec<f64>,
     /// Force of each cell that pushes the bodies apart, N. Shape (cells).
     pub load: Vec<f64>,
-    /// The same per closing speed of 1 m/s that is equal everywhere, at the present viscosity, N s/m. Shape (cells).
+    /// The same per closing speed of the bodies of 1 m/s, at the present viscosity, N s/m. Shape (cells).
     pub unit_load: Vec<f64>,
-    /// Sum of `load`, N.
+    /// Force on each body, N: `load`, less what relieves the contact.
     pub force: f64,
-    /// Sum of `unit_load`, N s/m.
+    /// The same of `unit_load`, N s/m.
     pub resistance: f64,
+    /// What relieves the contact, of `load` in N and of `unit_load` in N s/m.
+    pub relief: [f64; 2],
     /// Power dissipated in W.
     pub dissipation: f64,
-    /// Where the bodies overlap most beside the contact on the axis. Up to the minimal gap that is no more than the film's
+    /// Where the bodies overlap most outside the contact on the axis. Up to the minimal gap that is no more than the film's
     /// equation leaves open.
     pub overlap: Option<Overlap>,
-    /// Flow through the outer face of each cell. Shape (cells), or empty where there is no film.
+    /// The cells and the flow through the outer face of each. Shape (cells), or empty where there is no film.
     pub faces: Vec<Face>,
 }
 
-/// Overlap of plate and inner body beside the contact on the axis.
+/// Overlap of plate and inner body outside the contact on the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Overlap {
     /// Radius in m.
     pub radius: f64,
-    /// Within the overlap around the axis how much deeper than there, else how deep, m.
+    /// Depth in m.
     pub depth: f64,
 }
 
@@ -79,10 +112,10 @@ pub struct Neck {
 /// Flow through the outer face of a cell of the film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Face {
+    /// The cell.
+    pub ring: Ring,
     /// Radius of the face in m.
     pub radius: f64,
-    /// Area of the cell inside of it in m^2.
-    pub area: f64,
     /// Width of the film there in m, the minimal gap at least.
     pub width: f64,
     /// Fall of the pressure to the next cell in Pa.
@@ -91,7 +124,7 @@ pub struct Face {
     pub per_flow: f64,
     /// Change of the fall per widening of the gap at the face, Pa/m.
     pub per_gap: f64,
-    /// Fall against a uniform closing speed of 1 m/s at the present viscosity, Pa s/m.
+    /// Fall per closing speed of the bodies of 1 m/s at the present viscosity, Pa s/m.
     unit_fall: f64,
 }
 
@@ -109,8 +142,6 @@ impl FilmForces {
 
 /// Cells of the film unless asked for otherwise.
 pub const CELLS: usize = 64;
-/// Parts into which an overlap is divided to look for its deepest place, or for its end.
-const OVERLAP_SAMPLES: u32 = 8;
 /// First length of the graded cells over the width of the pressure, both in r^2.
 const FINENESS: f64 = 1.0;
 
@@ -126,51 +157,37 @@ impl Film {
         self.rim
     }
 
+    /// The tip under `contact`.
+    pub fn indentation(&self, contact: TipContact) -> Indentation {
+        Indentation::new(contact, self.tip_radius)
+    }
+
     /// The minimal gap in m.
     pub fn minimum_gap(&self) -> f64 {
         self.minimum_gap
     }
 
-    /// The deeper one of `before` and the overlap with `gap` m at `radius` m, if that is one: below `level` m.
-    fn deeper(before: Option<Overlap>, level: f64, radius: f64, gap: f64) -> Option<Overlap> {
-        let depth = level - gap;
-        if depth > before.map_or(0.0, |o| o.depth) { Some(Overlap { radius, depth }) } else { before }
-    }
-
-    /// The deepest overlap inside r^2 = `start`.
-    fn deepest_inside(gap: impl Fn(f64) -> f64, axis_gap: f64, start: f64) -> Option<Overlap> {
-        (1..OVERLAP_SAMPLES)
-            .map(|i| start * f64::from(i) / f64::from(OVERLAP_SAMPLES))
-            .fold(None, |found, square| Self::deeper(found, axis_gap, square.sqrt(), gap(square)))
-    }
-
     /// Solves for the pressure and writes its loads into `forces`.
     pub fn solve(&self, profile: &impl Profile, forces: &mut FilmForces) {
-        forces.radius.clear();
         forces.load.clear();
         forces.unit_load.clear();
         forces.faces.clear();
-        (forces.force, forces.resistance, forces.dissipation, forces.overlap) = (0.0, 0.0, 0.0, None);
+        (forces.force, forces.resistance, forces.relief) = (0.0, 0.0, [0.0; 2]);
+        (forces.dissipation, forces.overlap) = (0.0, None);
         // the tip is a paraboloid, which is what lubrication theory resolves of a sphere: with the sphere's own
         // shape the force would be further from Stokes flow (Brenner 1961), 2.4 % too low at a gap of R/700
         let curvature = 0.5 / self.tip_radius;
         let gap = |square: f64| profile.gap(square.sqrt()) + curvature * square;
-        let end = self.rim * self.rim;
-        let axis_gap = gap(0.0);
-        // where the overlap would end on a flat plate
-        let flat = (-axis_gap).max(0.0) / curvature;
-        let start = if flat > 0.0 { edge_of_overlap(gap, axis_gap, flat, end) } else { 0.0 };
-        forces.overlap = (start > flat).then(|| Self::deepest_inside(gap, axis_gap, start)).flatten();
+        let (start, end) = (profile.patch(), self.rim * self.rim);
         // nothing is wet, or nothing that matters
         if start >= end * (1.0 - 1e-9) {
-            // up to the rim the plate lies on the tip: how far it may is left to Hertz's contact, but where an open
-            // film closes there the law jumps
-            let depth = (-gap(end)).clamp(0.0, self.minimum_gap);
-            forces.overlap = forces.overlap.or(Some(Overlap { radius: end.sqrt(), depth }));
             return;
         }
-        // cell faces in r^2: start + first (growth^k - 1)
-        let scale = 2.0 * FINENESS * self.tip_radius * axis_gap.max(0.0).hypot(self.minimum_gap);
+        // cell faces in r^2: start + first (growth^k - 1). The first length is that in which the gap opens by the minimal
+        // gap: in proportion to r^2, around a patch with the power 2/3 of it
+        let narrow = if start > 0.0 { 0.0 } else { gap(0.0).max(0.0) };
+        let opening = self.tip_radius * narrow.hypot(self.minimum_gap);
+        let scale = 2.0 * FINENESS * (opening * opening * (start + opening)).cbrt();
         let growth = ((end - start) / scale).ln_1p() / self.cells as f64;
         let (ratio, mut power) = (growth.exp(), 1.0);
         let mut face = start;
@@ -179,33 +196,34 @@ impl Film {
             power *= ratio;
             let next = if cell + 1 == self.cells { end } else { start + scale * (power - 1.0) };
             let after = if cell + 1 == self.cells { end } else { start + scale * (power * ratio - 1.0) };
-            let (centre, next_centre) = (0.5 * (face + next), 0.5 * (next + after));
-            let area = PI * (next - face);
-            let radius = centre.sqrt();
+            let ring = Ring { squares: [face, next] };
             // what is squeezed out inside of the outer face flows through it
-            flow -= profile.rate(radius) * area;
-            unit_flow += area;
+            flow -= profile.rate(ring) * ring.area();
+            unit_flow += profile.closing(ring) * ring.area();
             let (face_radius, face_gap) = (next.sqrt(), gap(next));
             if face_gap < 0.0 {
-                forces.overlap = Self::deeper(forces.overlap, 0.0, face_radius, face_gap);
+                let deepest = forces.overlap.map_or(0.0, |overlap| overlap.depth);
+                if -face_gap > deepest {
+                    forces.overlap = Some(Overlap { radius: face_radius, depth: -face_gap });
+                }
             }
             let width = face_gap.max(self.minimum_gap);
             let rate = 6.0 * flow.abs() / (2.0 * PI * face_radius * width * width);
             let (viscosity, slope) = self.viscosity.with_slope(rate);
             // with x = r^2: flow = -2 pi r h^3/(12 mu) dp/dr = -pi x h^3/(3 mu) dp/dx
-            let resistance = 3.0 * viscosity * (next_centre - centre) / (PI * next * width.powi(3));
+            let length = 0.5 * (next + after) - ring.middle();
+            let resistance = 3.0 * viscosity * length / (PI * next * width.powi(3));
             let fall = flow * resistance;
             forces.dissipation += flow * fall;
             forces.faces.push(Face {
+                ring,
                 radius: face_radius,
-                area,
                 width,
                 fall,
                 unit_fall: unit_flow * resistance,
                 per_flow: (1.0 + slope) * resistance,
                 per_gap: if face_gap > self.minimum_gap { -(3.0 + 2.0 * slope) * fall / width } else { 0.0 },
             });
-            forces.radius.push(radius);
             face = next;
         }
         forces.load.resize(self.cells, 0.0);
@@ -213,66 +231,12 @@ impl Film {
         let mut pressure = [0.0; 2];
         for (cell, face) in forces.faces.iter().enumerate().rev() {
             pressure = [pressure[0] + face.fall, pressure[1] + face.unit_fall];
-            forces.load[cell] = pressure[0] * face.area;
-            forces.unit_load[cell] = pressure[1] * face.area;
-            forces.force += forces.load[cell];
-            forces.resistance += forces.unit_load[cell];
+            let loads = pressure.map(|pressure| pressure * face.ring.area());
+            (forces.load[cell], forces.unit_load[cell]) = (loads[0], loads[1]);
+            let closing = profile.closing(face.ring);
+            forces.force += closing * loads[0];
+            forces.resistance += closing * loads[1];
+            forces.relief = [0, 1].map(|i| forces.relief[i] + (1.0 - closing) * loads[i]);
         }
     }
-}
-
-/// Where in r^2, between 0 and `end`, the overlap around the axis ends: the gap, `axis_gap` < 0 there, is zero for the first
-/// time. `flat` is where it would end on a flat plate. `end` if there is an overlap up to the end.
-///
-/// The waves of the plate can bring it to the other body farther out again; that is no end of this overlap.
-fn edge_of_overlap(gap: impl Fn(f64) -> f64, axis_gap: f64, flat: f64, end: f64) -> f64 {
-    let mut low = (0.0, axis_gap);
-    let mut high = (flat.min(end), gap(flat.min(end)));
-    // a plate that bends around the body may leave it and come back
-    let left = |low: f64, high: f64| {
-        (1..OVERLAP_SAMPLES)
-            .map(|i| low + (high - low) * f64::from(i) / f64::from(OVERLAP_SAMPLES))
-            .map(|at| (at, gap(at)))
-            .find(|(_, gap)| *gap > 0.0)
-    };
-    while high.1 <= 0.0 {
-        if let Some(left) = left(low.0, high.0) {
-            high = left;
-        } else if high.0 >= end {
-            return end;
-        } else {
-            let next = (2.0 * high.0).min(end);
-            (low, high) = (high, (next, gap(next)));
-        }
-    }
-    let root = |high| root_between(&gap, low, high, [1e-14 * -axis_gap, 1e-15 * end]);
-    let found = root(high);
-    left(low.0, found).map_or(found, root)
-}
-
-/// One of the roots of `gap` between a place with its negative value and one with its positive value, by regula falsi after
-/// Illinois: the gap is nearly linear in r^2. `close` are the value and the width that end the search.
-fn root_between(gap: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64), close: [f64; 2]) -> f64 {
-    let mut last = 0;
-    for _ in 0..100 {
-        let at = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-        let value = gap(at);
-        if value.abs() <= close[0] || high.0 - low.0 <= close[1] {
-            return at;
-        }
-        if value > 0.0 {
-            high = (at, value);
-            if last == 1 {
-                low.1 *= 0.5;
-            }
-            last = 1;
-        } else {
-            low = (at, value);
-            if last == -1 {
-                high.1 *= 0.5;
-            }
-            last = -1;
-        }
-    }
-    0.5 * (low.0 + high.0)
 }

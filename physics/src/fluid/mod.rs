@@ -7,9 +7,11 @@ pub mod added_mass;
 pub mod deflection;
 mod drag;
 pub mod film;
+mod indentation;
 mod viscosity;
 
 pub use deflection::Deflection;
 pub use drag::Drag;
-pub use film::{Film, FilmForces, Profile};
+pub use film::{Film, FilmForces, Profile, Ring};
+pub use indentation::{Indentation, TipContact};
 pub use viscosity::Viscosity;

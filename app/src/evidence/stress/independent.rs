@@ -164,7 +164,9 @@ fn solve(
     let rate = |y: &[f64], dy: &mut [f64]| {
         equations.rate(y, dy);
         if let Some(fluid) = fluid {
-            fluid.evaluate(&y[..n], &y[n..], &mut load);
+            let approach = system.modal_approach(&y[..n]);
+            let local = system.contact(approach, approach).map_or(approach, |(local, _)| local);
+            fluid.evaluate(&y[..n], &y[n..], system.tip_contact(local), &mut load);
             for (acceleration, force) in dy[n + INNER..].iter_mut().zip(&load.force) {
                 *acceleration += force;
             }

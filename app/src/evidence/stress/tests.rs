@@ -181,7 +181,7 @@ fn a_plate_that_lies_on_the_inner_body_is_refused_at_once() {
 #[test]
 fn a_film_that_answers_to_rounding_converges() {
     let report = run(1, 10_000_011_920, &|| ()).unwrap();
-    assert_eq!((report.failures, report.beyond_model), (vec![], vec![10_000_011_920]));
+    assert_eq!((report.failures, report.beyond_model), (vec![], vec![]));
     assert!(report.worst["steps"].value < 1000.0, "{:?}", report.worst["steps"]);
 }
 

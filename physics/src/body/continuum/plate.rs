@@ -23,6 +23,9 @@ use crate::scene::{Edge, Plate};
 use std::f64::consts::{PI, SQRT_2, TAU};
 use std::rc::Rc;
 
+/// Frequency of the mode that stands for all that are left out, over the lowest of theirs (see [`ContinuumPlate::modal_body_in_film`]).
+const ATTACHED: f64 = 1.5;
+
 /// Mode of the continuum plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlateMode {
@@ -117,6 +120,34 @@ impl ContinuumPlate {
     /// patches: its curvature is the residual's, its weight that of a patch so wide that the residual stays positive
     /// definite.
     pub fn modal_body(&self, modes: usize, slow: f64) -> ModalBody {
+        let (body, flexibility) = self.lowest(modes, slow);
+        self.with_residual(body, flexibility)
+    }
+
+    /// The same for a film, which presses on the plate around the contact: of its `modes` the last one stands for all that are left
+    /// out, as far as they bend the plate (a residual attachment mode: Rubin, AIAA Journal 13 (1975) 995).
+    ///
+    /// It has their flexibility between the faces, and of a frequency in which their inertia is right too: as the frequencies of a bending plate
+    /// grow with the square of their number, that is [`ATTACHED`] times the lowest of them.
+    pub fn modal_body_in_film(&self, modes: usize, slow: f64) -> ModalBody {
+        let real = modes.min(self.omega.len() - 1).saturating_sub(1);
+        let (mut body, mut flexibility) = self.lowest(real, slow);
+        let omega = ATTACHED * self.omega_next(real);
+        let participation = omega * flexibility.mutual[WHOLE][WHOLE].max(0.0).sqrt();
+        body.omega.push(omega);
+        body.damping_ratio.push(self.damping_ratio);
+        body.participation.push([participation; 2]);
+        let share = -omega.powi(-2);
+        flexibility.add(share, share, [[participation; TABULATED]; 2]);
+        self.with_residual(body, flexibility)
+    }
+
+    fn with_residual(&self, body: ModalBody, flexibility: PatchTable) -> ModalBody {
+        ModalBody { residual: Some(PatchFlexibility::through(&flexibility, self.patch_radius)), ..body }
+    }
+
+    /// The lowest `modes`, and the flexibility beyond them.
+    fn lowest(&self, modes: usize, slow: f64) -> (ModalBody, PatchTable) {
         let modes = modes.min(self.omega.len() - 1);
         let mut flexibility = self.flexibility;
         let mut body = ModalBody {
@@ -139,8 +170,7 @@ impl ContinuumPlate {
             let share = -omega.powi(-2);
             flexibility.add(share, share, taken);
         }
-        body.residual = Some(PatchFlexibility::through(&flexibility, self.patch_radius));
-        body
+        (body, flexibility)
     }
 
     /// Frequency in rad/s of the lowest elastic mode that [`Self::modal_body`] leaves to the residual.

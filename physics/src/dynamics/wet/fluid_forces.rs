@@ -3,7 +3,7 @@
 use crate::dynamics::system::{INNER, PLATE};
 use crate::fluid::deflection::PlateProfile;
 use crate::fluid::film::{CELLS, Film, FilmForces, Neck, Overlap};
-use crate::fluid::{Deflection, Drag, Viscosity};
+use crate::fluid::{Deflection, Drag, Ring, TipContact, Viscosity};
 use crate::scene::{Fluid, Inner, Plate};
 
 /// Film and drag, of which at least one is there, on the inner body and the modes of the plate.
@@ -11,8 +11,8 @@ use crate::scene::{Fluid, Inner, Plate};
 pub struct FluidForces {
     film: Option<(Film, Deflection)>,
     drag: Option<Drag>,
-    /// Initial gap in m and 1/sqrt(mass) of the inner body.
-    inner: (f64, f64),
+    /// 1/sqrt(mass) of the inner body.
+    per_mass: f64,
 }
 
 /// What the fluid does at one instant. Coordinates are the inner body's and then the plate's: n = 1 + modes.
@@ -20,9 +20,9 @@ pub struct FluidForces {
 pub struct FluidLoad {
     /// Generalised forces. Shape (n).
     pub force: Vec<f64>,
-    /// Generalised forces of the film per uniform closing speed of 1 m/s, N s/m kg^(-1/2). Shape (n).
+    /// Generalised forces of the film per closing speed of the bodies of 1 m/s, N s/m kg^(-1/2). Shape (n).
     pub unit_force: Vec<f64>,
-    /// Resistance of the film against a uniform closing speed, N s/m; 0 without a film.
+    /// Resistance of the film against a closing speed of the bodies, N s/m; 0 without a film.
     pub resistance: f64,
     /// Force of the film, positive where it pushes the bodies apart, N.
     pub film_force: f64,
@@ -31,10 +31,11 @@ pub struct FluidLoad {
     /// Power dissipated in the film, and by the drag, W.
     pub dissipation: [f64; 2],
     film: FilmForces,
+    contact: TipContact,
 }
 
 impl FluidLoad {
-    /// Overlap of plate and inner body beside the axis, where the model knows no contact: the film between them is not one.
+    /// Overlap of plate and inner body off the axis, where the model has no contact: lubrication does not apply there.
     pub fn overlap(&self) -> Option<Overlap> {
         self.film.overlap
     }
@@ -87,7 +88,7 @@ impl FluidForces {
         let drag = Drag::new(fluid, inner);
         let mass = inner.shape.mass(&inner.material);
         let there = film.is_some() || drag.is_some();
-        Ok(there.then(|| Self { film, drag, inner: (inner.gap, 1.0 / mass.sqrt()) }))
+        Ok(there.then(|| Self { film, drag, per_mass: 1.0 / mass.sqrt() }))
     }
 
     /// Number of coordinates the fluid acts on, counted from that of the inner body.
@@ -100,8 +101,9 @@ impl FluidForces {
         self.film.as_ref().map_or(f64::INFINITY, |(film, _)| film.minimum_gap())
     }
 
-    /// The forces in the state (`q`, `v`) of the coordinates of a [`System`](crate::dynamics::system::System).
-    pub fn evaluate(&self, q: &[f64], v: &[f64], load: &mut FluidLoad) {
+    /// The forces in the state (`q`, `v`) of the coordinates of a [`System`](crate::dynamics::system::System), where the inner
+    /// body has the `contact`.
+    pub fn evaluate(&self, q: &[f64], v: &[f64], contact: TipContact, load: &mut FluidLoad) {
         const { assert!(PLATE == INNER + 1) };
         let size = self.size();
         let (q, v) = (&q[INNER..INNER + size], &v[INNER..INNER + size]);
@@ -109,23 +111,22 @@ impl FluidForces {
             forces.clear();
             forces.resize(size, 0.0);
         }
+        load.contact = contact;
         (load.resistance, load.film_force, load.drag_force, load.dissipation) = (0.0, 0.0, 0.0, [0.0; 2]);
-        let (gap, per_mass) = self.inner;
+        let per_mass = self.per_mass;
         if let Some((film, deflection)) = &self.film {
             let plate = [deflection.sum(&q[1..]), deflection.sum(&v[1..])];
-            let profile = PlateProfile {
-                deflection,
-                plate: [&plate[0], &plate[1]],
-                distance: [gap - per_mass * q[0], -per_mass * v[0]],
-            };
+            let indentation = film.indentation(contact);
+            let profile = PlateProfile::new(deflection, [&plate[0], &plate[1]], per_mass * v[0], indentation);
             film.solve(&profile, &mut load.film);
             let solved = &load.film;
-            for (forces, loads, sum) in [
-                (&mut load.force, &solved.load, solved.force),
-                (&mut load.unit_force, &solved.unit_load, solved.resistance),
+            for (forces, loads, sum, relief) in [
+                (&mut load.force, &solved.load, solved.force, solved.relief[0]),
+                (&mut load.unit_force, &solved.unit_load, solved.resistance, solved.relief[1]),
             ] {
                 forces[0] = -per_mass * sum;
-                deflection.generalised(&solved.radius, loads, &mut forces[1..]);
+                let loads = solved.faces.iter().zip(loads).map(|(face, load)| (face.ring.radius(), *load));
+                deflection.generalised(loads.chain([(0.0, -relief)]), &mut forces[1..]);
             }
             (load.film_force, load.resistance) = (solved.force, solved.resistance);
             load.dissipation[0] = solved.dissipation;
@@ -141,19 +142,26 @@ impl FluidForces {
     /// How the forces change with the motion, in the state with velocities `v` that `load` was evaluated in.
     pub fn tangent(&self, v: &[f64], load: &FluidLoad) -> Tangent {
         let n = self.size();
-        let (_, per_mass) = self.inner;
+        let per_mass = self.per_mass;
         let mut tangent = Tangent { size: n, per_rate: vec![0.0; n * n], per_place: vec![0.0; n * n] };
-        if let Some((_, deflection)) = &self.film {
+        if let Some((film, deflection)) = &self.film {
             // flow through a face per rate of each coordinate, and the gap there per coordinate
             let (mut flow, mut gap, mut shapes) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-            let at = |radius: f64, values: &mut [f64]| {
-                values[0] = -per_mass;
+            let indentation = film.indentation(load.contact);
+            let centre = deflection.shapes_on_axis();
+            let at = |radius: f64, ring: Ring, values: &mut [f64]| {
+                let closing = indentation.closing(ring);
+                values[0] = -per_mass * closing;
                 deflection.shapes_at(radius, &mut values[1..]);
+                for (value, centre) in values[1..].iter_mut().zip(centre) {
+                    *value -= (1.0 - closing) * centre;
+                }
             };
-            for (face, &centre) in load.film.faces.iter().zip(&load.film.radius) {
-                at(centre, &mut shapes);
-                flow.iter_mut().zip(&shapes).for_each(|(flow, shape)| *flow -= face.area * shape);
-                at(face.radius, &mut gap);
+            for face in &load.film.faces {
+                at(face.ring.radius(), face.ring, &mut shapes);
+                flow.iter_mut().zip(&shapes).for_each(|(flow, shape)| *flow -= face.ring.area() * shape);
+                // the growth of the patch is omitted
+                at(face.radius, face.ring, &mut gap);
                 let rows = tangent.per_rate.chunks_exact_mut(n).zip(tangent.per_place.chunks_exact_mut(n));
                 for ((per_rate, per_place), own) in rows.zip(&flow) {
                     // a fall of the pressure loads everything inside of the face
@@ -187,11 +195,12 @@ mod tests {
     use crate::scene::ShearThinning;
     use approx::assert_relative_eq;
 
-    /// Against differences of the forces themselves; what the cells' motion adds is small.
+    /// Against differences of the forces themselves; what the motion of the cells adds is small. In contact that of the patch adds much to
+    /// what the places change.
     #[test]
-    fn the_tangent_is_the_derivative_of_the_forces() {
+    fn the_forces_dissipate_what_they_take_and_the_tangent_is_their_derivative() {
         let law = ShearThinning { infinite_shear_viscosity: 1e-4, relaxation_time: 1e-3, power_index: 0.5 };
-        for shear_thinning in [None, Some(law)] {
+        for (shear_thinning, gap) in [(None, 2e-5_f64), (Some(law), 2e-5), (None, 0.0)] {
             let fluid = Fluid {
                 viscosity: 0.02,
                 density: 900.0,
@@ -211,20 +220,25 @@ mod tests {
             let forces = FluidForces {
                 film: Some((film, Deflection::new(rim, &deflection(&Deflection::radii(rim))))),
                 drag: Some(Drag { coefficient: 1e-4 }),
-                inner: (2e-5, 1.0 / 3e-3f64.sqrt()),
+                per_mass: 1.0 / 3e-3f64.sqrt(),
             };
             let (q, v) = ([0.0, 2e-7, 3e-8, -2e-8], [0.0, 0.02, 3e-3, -1e-3]);
             let at = |q: &[f64], v: &[f64]| {
+                let approach = forces.per_mass * q[1] - 40.0 * q[2] - 30.0 * q[3];
+                let contact = TipContact { patch: approach - gap, per_approach: 1.0 };
                 let mut load = FluidLoad::default();
-                forces.evaluate(q, v, &mut load);
+                forces.evaluate(q, v, contact, &mut load);
                 load
             };
-            let tangent = forces.tangent(&v, &at(&q, &v));
+            let load = at(&q, &v);
+            // what relieves the contact is taken from the plate's modes and the body alike
+            let taken: f64 = load.force.iter().zip(&v[INNER..]).map(|(force, v)| -force * v).sum();
+            assert_relative_eq!(taken, load.dissipation[0] + load.dissipation[1], max_relative = 1e-11);
+            let tangent = forces.tangent(&v, &load);
             let size = |values: &[f64]| values.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
             for l in 0..3 {
-                for (per, places, values, step) in
-                    [(&tangent.per_rate, false, v, 1e-6), (&tangent.per_place, true, q, 1e-11)]
-                {
+                let both = [(&tangent.per_rate, false, v, 1e-6), (&tangent.per_place, true, q, 1e-11)];
+                for (per, places, values, step) in both.into_iter().take(if gap > 0.0 { 2 } else { 1 }) {
                     let moved = |by: f64| {
                         let mut values = values;
                         values[INNER + l] += by;

@@ -44,7 +44,8 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
     let hit = system.hertz_impact();
     let (q, v) = system.initial_state();
     let mut start = FluidLoad::default();
-    fluid.evaluate(&q, &v, &mut start);
+    let local = system.modal_approach(&q);
+    fluid.evaluate(&q, &v, system.tip_contact(local), &mut start);
     let trial = Trial {
         fluid: vec![[0.0; STAGES]; fluid.size()],
         loads: vec![FluidLoad::default(); STAGES],
@@ -61,10 +62,11 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
         tables: BTreeMap::new(),
         looked: 0.0,
         time: 0.0,
-        approach: system.modal_approach(&q),
-        local: system.modal_approach(&q),
+        approach: local,
+        local,
         force: [0.0; 2],
         load: start,
+        late: FluidLoad::default(),
         q,
         v,
         trial,
@@ -109,6 +111,8 @@ struct WetStepper<'a> {
     force: [f64; 2],
     /// What the fluid does at the present time.
     load: FluidLoad,
+    /// What it does late in a step that is judged.
+    late: FluidLoad,
     /// The latest step; its vectors are used again.
     trial: Trial,
     before: StepForces,

@@ -27,6 +27,9 @@ const MAX_CHOSEN_MODES: usize = 64;
 /// Contact radius over a sphere's radius from which on its residual flexibility is not known.
 const WIDEST_PATCH: f64 = 0.5;
 
+/// Displacement of the centre in a mode, over the largest in one, from which on the mode is one that moves the centre.
+const MOVES: f64 = 0.5;
+
 /// A model of a scene.
 pub(super) struct Assembled {
     /// Oscillators and contacts.
@@ -189,6 +192,12 @@ pub(super) fn continuum_shapes(
         let sign = (shape[0] * participation).signum();
         shape.iter_mut().for_each(|value| *value *= sign);
     }
+    // the last mode stands for all from it on: with the shape of the last one that moves the centre
+    let largest = shapes.iter().fold(0.0, |largest: f64, shape| largest.max(shape[0].abs()));
+    let moves = shapes.iter().rfind(|shape| shape[0].abs() >= MOVES * largest).cloned();
+    if let (Some(last), Some(moves), Some(participation)) = (shapes.last_mut(), moves, inner.last()) {
+        *last = moves.iter().map(|value| participation / moves[0] * value).collect();
+    }
     Ok(shapes)
 }
 
@@ -215,8 +224,12 @@ fn continuum_plate(
 ) -> Result<(ModalBody, f64)> {
     let patches = predictor.meshed_patches(&setup.plate);
     let build = |modes| bodies.plate(&setup.plate, patches, modes);
+    let in_film = setup.fluid.as_ref().is_some_and(|fluid| fluid.squeeze_film);
     let lowest = |plate: &ContinuumPlate, modes| {
-        Ok((plate.modal_body(modes, predictor.slow()), plate.omega_next(modes)))
+        let slow = predictor.slow();
+        let body =
+            if in_film { plate.modal_body_in_film(modes, slow) } else { plate.modal_body(modes, slow) };
+        Ok((body, plate.omega_next(modes)))
     };
     match requested {
         RequestedModes::Modes(modes) => lowest(&build(modes)?, modes),
@@ -227,7 +240,7 @@ fn continuum_plate(
                 let enough =
                     (1..=most).find(|n| predictor.truncation_error(plate.omega_next(*n)) <= TRUNCATION);
                 if let Some(modes) = enough.or((most >= MAX_CHOSEN_MODES).then_some(most)) {
-                    return lowest(&plate, modes);
+                    return lowest(&plate, (modes + usize::from(in_film)).min(most));
                 }
                 // with twice as many modes the highest frequency is four times as high at most
                 let far = predictor.truncation_error(plate.omega_next(most)) > 16.0 * TRUNCATION;

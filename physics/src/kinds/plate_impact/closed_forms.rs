@@ -11,7 +11,7 @@ use crate::dynamics::memory;
 use crate::dynamics::wet::FluidForces;
 use crate::error::Result;
 use crate::fluid::film::CELLS;
-use crate::fluid::{Film, FilmForces, Profile, Viscosity};
+use crate::fluid::{Film, FilmForces, Profile, Ring, Viscosity};
 use crate::material::Relaxation;
 use crate::scene::{Bender, Fluid, Model, Shape};
 use std::f64::consts::{PI, TAU};
@@ -146,7 +146,7 @@ impl Profile for Plane {
         self.gap
     }
 
-    fn rate(&self, _: f64) -> f64 {
+    fn rate(&self, _: Ring) -> f64 {
         -self.speed
     }
 }

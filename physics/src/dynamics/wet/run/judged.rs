@@ -4,7 +4,7 @@ use super::{WetStepper, with_start};
 use crate::dynamics::step_bounds::{force_scale, peak_share};
 use crate::dynamics::system::dot;
 use crate::dynamics::wet::contact_between;
-use crate::numerics::stages::STAGES;
+use crate::numerics::stages::{STAGES, Stages};
 use std::cell::LazyCell;
 
 /// Share of a step's admissible defect at which its iteration may end, if rounding errors permit.
@@ -35,9 +35,10 @@ impl WetStepper<'_> {
         }
     }
 
-    /// Distance between the forces at the start of the step and the polynomials of the step, as an impulse in relation
-    /// to the momenta.
-    pub(super) fn defect(&self, h: f64, scale: [f64; 2]) -> f64 {
+    /// Distance between the forces and the polynomials of the step, at its start and, of the film around a contact, late in it, as an impulse
+    /// in relation to the momenta.
+    pub(super) fn defect(&mut self, h: f64, scale: [f64; 2]) -> f64 {
+        let late = self.late_film_defect(h) * h / scale[1];
         let extrapolation = self.collocation.ends[0];
         let film = std::array::from_fn(|j| self.trial.loads[j].film_force);
         let [outer, inner] = self.trial.forces;
@@ -47,7 +48,24 @@ impl WetStepper<'_> {
             .zip(starts)
             .zip([scale[0], scale[1], scale[1]])
             .map(|((stages, start), scale)| (start - dot(&extrapolation, stages)).abs() * h / scale)
-            .fold(0.0, f64::max)
+            .fold(late, f64::max)
+    }
+
+    /// Distance in N between the film's force and its polynomial halfway between the last two points of the step of `h` s just solved: where
+    /// a contact ends, the force changes with the square root of the time. 0 without a contact in the step.
+    fn late_film_defect(&mut self, h: f64) -> f64 {
+        let (system, trial) = (self.wet.system, &self.trial);
+        if trial.local[1].iter().all(|patch| *patch <= 0.0) || self.wet.fluid.minimum_gap().is_infinite() {
+            return 0.0;
+        }
+        let [.., before, end] = self.collocation.nodes;
+        let place = 0.5 * (before + end);
+        let (q, v) = self.motion_at(&self.wet.generalised(trial), place * h, h);
+        let approach = system.modal_approach(&q);
+        let Some((local, _)) = system.contact(approach, approach) else { return f64::INFINITY };
+        self.wet.fluid.evaluate(&q, &v, system.tip_contact(local), &mut self.late);
+        let film: Stages = std::array::from_fn(|j| trial.loads[j].film_force);
+        (self.late.film_force - dot(&self.collocation.interpolation(place), &film)).abs()
     }
 
     /// Distance in N between the contact forces at the start of the step and the polynomials of the step, where they are
