@@ -17,9 +17,12 @@ pub use conformal::{ErrorScale, Place, SeenError};
 pub use kinds::stokes_number;
 pub use similarity::{MEASURES, Similarity};
 
+use impactcheck_physics::kinds::plate_impact::FILM_SHARE;
 use impactcheck_physics::result::Summary;
 use impactcheck_physics::scene::{Model, Scene};
 use serde::Serialize;
+use similarity::FILM_LOSS;
+use std::borrow::Borrow;
 use std::collections::BTreeMap;
 
 /// Share of intervals that hold the reference's value.
@@ -175,7 +178,8 @@ impl Similar {
         // independent of the errors of the base, whose results have converged
         let unconverged = continuum.integration_error.unwrap_or(0.0);
         let half_width = |(name, _): (&'static str, f64)| {
-            let place = place(&own.results, &own.numbers, name, stated);
+            let scale = scale(name, |name| value_of(continuum, name), impact_speed(scene))?;
+            let place = place(&own.results, &own.numbers, (name, scale), stated);
             let errors = errors(&self.scenes, name);
             let error = ErrorScale::new(&errors).filter(|_| errors.len() >= FEWEST)?;
             let own = if name == OF_ALL_MODES { 0.0 } else { unconverged };
@@ -217,25 +221,31 @@ pub fn error(scene: &SolvedScene, model: Model, quantity: &str) -> Option<(f64, 
     let scale = scale(quantity, |name| scene.of_model(Model::C, name), scene.speed).filter(|s| *s > 0.0)?;
     let band = values.band? / scale;
     let signed = (scene.of_model(model, quantity)? - values.reference?) / scale;
-    let place = place(&scene.results, &scene.numbers, quantity, scene.truncation);
+    let place = place(&scene.results, &scene.numbers, (quantity, scale), scene.truncation);
     let is_known = !place.coordinates.is_empty() && scene.unsound.is_empty();
     let seen = SeenError { place, error: signed.abs(), noise: NOISE * band };
     (is_known && band <= DETERMINED).then_some((signed, seen))
 }
 
-/// Where a scene lies: the logarithms of the numbers of its result, or its own numbers if the result has none; with the error of the omitted
-/// modes that the result states for `quantity`.
-fn place<Name>(
+/// Where a scene lies: the logarithms of the numbers of its result, or its own numbers if the result has none; with the errors that the
+/// result states of a `quantity` with its [`scale`]: of the omitted modes and of the film.
+fn place<Name: Ord + Borrow<str>>(
     results: &BTreeMap<Name, f64>,
     numbers: &BTreeMap<Name, f64>,
-    quantity: &str,
+    (quantity, scale): (&str, f64),
     truncation: f64,
 ) -> Place {
     let mut coordinates: Vec<f64> = results.values().map(|value| value.ln()).collect();
     if coordinates.is_empty() {
         coordinates = numbers.values().copied().collect();
     }
-    Place { coordinates, stated: if quantity == OF_ALL_MODES { 0.0 } else { truncation } }
+    let film = FILM_SHARE * results.get(FILM_LOSS).copied().unwrap_or(0.0);
+    let stated = match quantity {
+        OF_ALL_MODES => 0.0,
+        "efficiency" => truncation + film / scale,
+        _ => truncation + film,
+    };
+    Place { coordinates, stated }
 }
 
 /// What the error of a quantity is relative to, by the values of a result and the `speed` of its impact in m/s: the quantity itself;

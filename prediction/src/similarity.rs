@@ -9,6 +9,9 @@ use std::collections::BTreeMap;
 /// What the numbers are, in their order, that decide how well a reduced model of an impact through a plate does.
 pub const MEASURES: [&str; 3] = ["patch/thickness", "contact/period", "mass ratio"];
 
+/// The number that decides how wrong the film of the models may be.
+pub(crate) const FILM_LOSS: &str = "loss in the film over the outer body's energy";
+
 /// Group and dimensionless numbers of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Similarity {

@@ -30,6 +30,7 @@ pub(super) use predictor::SMALLEST_PATCH;
 pub use results::{CURVES, Motion, PlateCurves, PlateQuantities};
 pub use scene::{MAX_MODES, PlateImpact};
 pub(super) use scene::{PLATE, read_plate, slenderness};
+pub use validity::FILM_SHARE;
 pub(super) use validity::{punches, warnings};
 
 /// Its name in scene files.

@@ -19,7 +19,7 @@ use crate::scene::Model;
 /// Widest patch radius over the plate's thickness that was measured, and the error of the force peaks found up to it.
 const MEASURED: (f64, f64) = (1.05, 0.01);
 /// Share of the film's loss by which the efficiency may be wrong: the film of the models does not deform plate and inner body.
-const FILM_SHARE: f64 = 0.25;
+pub const FILM_SHARE: f64 = 0.25;
 /// Error of the efficiency by it that is reported.
 const FILM_ERROR: f64 = 0.01;
 /// Share of the patch that the contacts have to be able to exceed before they become punches.
