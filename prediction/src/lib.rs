@@ -17,11 +17,10 @@ pub use conformal::{ErrorScale, Place, SeenError};
 pub use kinds::stokes_number;
 pub use similarity::{MEASURES, Similarity};
 
-use impactcheck_physics::kinds::plate_impact::FILM_SHARE;
 use impactcheck_physics::result::Summary;
 use impactcheck_physics::scene::{Model, Scene};
 use serde::Serialize;
-use similarity::FILM_LOSS;
+use similarity::FILM_ERROR;
 use std::borrow::Borrow;
 use std::collections::BTreeMap;
 
@@ -239,7 +238,7 @@ fn place<Name: Ord + Borrow<str>>(
     if coordinates.is_empty() {
         coordinates = numbers.values().copied().collect();
     }
-    let film = FILM_SHARE * results.get(FILM_LOSS).copied().unwrap_or(0.0);
+    let film = results.get(FILM_ERROR).copied().unwrap_or(0.0);
     let stated = match quantity {
         OF_ALL_MODES => 0.0,
         "efficiency" => truncation + film / scale,

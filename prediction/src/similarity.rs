@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 /// What the numbers are, in their order, that decide how well a reduced model of an impact through a plate does.
 pub const MEASURES: [&str; 3] = ["patch/thickness", "contact/period", "mass ratio"];
 
-/// The number that decides how wrong the film of the models may be.
-pub(crate) const FILM_LOSS: &str = "loss in the film over the outer body's energy";
+/// The number of a result that states by how much the film of the models may change the efficiency.
+pub(crate) const FILM_ERROR: &str = "possible error of the efficiency by the film";
 
 /// Group and dimensionless numbers of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]

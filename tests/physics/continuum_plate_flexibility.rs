@@ -122,6 +122,28 @@ fn modes_and_residual_together_are_the_static_flexibility_whatever_the_number_of
     }
 }
 
+/// In a film, whose pressure acts on modes alone.
+#[test]
+fn the_last_mode_in_a_film_has_the_flexibility_of_all_that_are_left_out() {
+    let body = plate_of(33e-3, 2e-3, Edge::Clamped, steel());
+    let patch = [0.3e-3, 0.5e-3];
+    let continuum = ContinuumPlate::new(&body, patch, 12, &MeshOptions::default()).unwrap();
+    for modes in [1, 3, 12] {
+        // by modes, and by the residual
+        let [plain, in_film] = [continuum.modal_body(modes, 0.0), continuum.modal_body_in_film(modes, 0.0)]
+            .map(|plate| {
+                assert_eq!(plate.omega.len(), modes);
+                let modal = plate.participation.iter().zip(&plate.omega);
+                let modal = modal.map(|([outer, inner], omega)| outer * inner / omega.powi(2)).sum::<f64>();
+                [modal, plate.residual.unwrap().at(patch.map(|a| a * a))[1]]
+            });
+        let all = plain[0] + plain[1];
+        assert_relative_eq!(in_film[0], all, max_relative = 1e-9);
+        assert_abs_diff_eq!(in_film[1], 0.0, epsilon = 1e-9 * all);
+        assert!(modes == 12 || plain[1] > 1e-3 * all, "{modes}: {plain:?}");
+    }
+}
+
 #[test]
 fn a_free_plate_moves_rigidly_with_its_mass_and_a_supported_one_does_not() {
     let body = plate_of(33e-3, 2e-3, Edge::Free, steel());

@@ -1,9 +1,9 @@
 //! The group of the validation base that a plate impact belongs to.
 
 use crate::MEASURES;
-use crate::similarity::FILM_LOSS;
+use crate::similarity::FILM_ERROR;
 use impactcheck_physics::contact::Hertz;
-use impactcheck_physics::kinds::plate_impact::PlateImpact;
+use impactcheck_physics::kinds::plate_impact::{FILM_SHARE, PlateImpact};
 use impactcheck_physics::material::{Material, modulus_ratio};
 use impactcheck_physics::result::Summary;
 use impactcheck_physics::scene::{Edge, Fluid, Shape};
@@ -129,10 +129,9 @@ pub(super) fn result_numbers(
             ("loss factor at the frequency of the contact", largest)
         }),
         stokes_number(setup).map(|number| ("Stokes number of the film", number)),
-        summary
-            .losses
-            .filter(|_| stokes_number(setup).is_some())
-            .map(|losses| (FILM_LOSS, losses.squeeze_film / (0.5 * outer * setup.outer.speed.powi(2)))),
+        summary.losses.filter(|_| stokes_number(setup).is_some()).map(|losses| {
+            (FILM_ERROR, FILM_SHARE * losses.squeeze_film / (0.5 * outer * setup.outer.speed.powi(2)))
+        }),
     ];
     let numbers: Vec<(&str, f64)> =
         MEASURES.into_iter().zip(measures).chain(special.into_iter().flatten()).collect();

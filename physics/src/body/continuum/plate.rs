@@ -128,7 +128,7 @@ impl ContinuumPlate {
     /// out, as far as they bend the plate (a residual attachment mode: Rubin, AIAA Journal 13 (1975) 995).
     ///
     /// It has their flexibility between the faces, and of a frequency in which their inertia is right too: as the frequencies of a bending plate
-    /// grow with the square of their number, that is [`ATTACHED`] times the lowest of them.
+    /// grow with the square of their number, that is 1.5 times the lowest of them.
     pub fn modal_body_in_film(&self, modes: usize, slow: f64) -> ModalBody {
         let real = modes.min(self.omega.len() - 1).saturating_sub(1);
         let (mut body, mut flexibility) = self.lowest(real, slow);
