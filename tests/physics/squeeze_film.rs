@@ -1,7 +1,7 @@
 //! The squeeze film (section 3.5.2 of the paper) against closed forms of lubrication theory.
 
 use approx::assert_relative_eq;
-use impactcheck::fluid::{Film, FilmForces, Indentation, Profile, Ring, TipContact, Viscosity};
+use impactcheck::fluid::{Film, FilmForces, Indentation, Profile, Ring, Viscosity};
 use impactcheck::scene::{Fluid, ShearThinning};
 use std::f64::consts::PI;
 
@@ -18,7 +18,7 @@ impl Profile for Rigid {
     fn gap(&self, _: f64) -> f64 {
         self.gap
     }
-    fn rate(&self, _: Ring) -> f64 {
+    fn rate(&self, _: Ring, _: f64) -> f64 {
         self.rate
     }
 }
@@ -31,7 +31,7 @@ struct Pressed {
 
 impl Pressed {
     fn indentation(&self) -> Indentation {
-        Indentation::new(TipContact { patch: self.patch, per_approach: 1.0 }, RADIUS)
+        Indentation::new(self.patch, 1.0, RADIUS)
     }
 }
 
@@ -39,8 +39,8 @@ impl Profile for Pressed {
     fn gap(&self, r: f64) -> f64 {
         self.indentation().gap(r)
     }
-    fn rate(&self, ring: Ring) -> f64 {
-        self.rate * self.closing(ring)
+    fn rate(&self, _: Ring, closing: f64) -> f64 {
+        self.rate * closing
     }
     fn patch(&self) -> f64 {
         self.indentation().square()
@@ -60,7 +60,7 @@ impl Profile for Wavy {
     fn gap(&self, r: f64) -> f64 {
         self.gap + 1e-6 * ((4e3 * r + self.phase).cos() - self.phase.cos())
     }
-    fn rate(&self, ring: Ring) -> f64 {
+    fn rate(&self, ring: Ring, _: f64) -> f64 {
         0.3 * (3e3 * ring.radius() + 7.0 * self.phase).sin()
     }
 }
@@ -182,7 +182,7 @@ fn film_takes_from_the_motion_exactly_what_it_dissipates() {
                 .faces
                 .iter()
                 .zip(&forces.load)
-                .map(|(face, load)| -load * profile.rate(face.ring))
+                .map(|(face, load)| -load * profile.rate(face.ring, face.closing))
                 .sum();
             assert!(forces.dissipation >= 0.0);
             assert_relative_eq!(taken, forces.dissipation, max_relative = 1e-11);
@@ -224,7 +224,7 @@ impl Profile for Around {
         let x = r * r;
         self.gap + (self.slope - 0.5 / RADIUS) * x + self.curve * x * x
     }
-    fn rate(&self, _: Ring) -> f64 {
+    fn rate(&self, _: Ring, _: f64) -> f64 {
         -0.1
     }
 }

@@ -14,7 +14,7 @@ pub fn final_velocities(system: &System, fluid: Option<&FluidForces>, h: f64, st
         let y = system.modal_approach(q);
         let (local, forces) = system.contact(y, y).expect("equilibrium");
         if let Some(fluid) = fluid {
-            fluid.evaluate(q, v, system.tip_contact(local), &mut load);
+            fluid.evaluate(q, v, system.indentation(local), &mut load);
         }
         let acceleration = (0..n).map(|k| {
             let o = system.oscillators[k];

@@ -14,7 +14,7 @@ use crate::actuator::circuit::{Account, Circuit};
 use crate::analytical::hertz::HertzImpact;
 use crate::body::ModalBody;
 use crate::contact::{Hertz, PatchFlexibility, Residual};
-use crate::fluid::TipContact;
+use crate::fluid::Indentation;
 use crate::material::Material;
 use crate::numerics::duhamel::{Feed, Oscillator};
 use crate::result::Drive;
@@ -404,10 +404,10 @@ impl System {
     }
 
     /// Contact of the inner body as a film around it sees it, with the patches `local` in m.
-    pub fn tip_contact(&self, local: [f64; 2]) -> TipContact {
+    pub fn indentation(&self, local: [f64; 2]) -> Indentation {
         let per_approach =
             self.residual.map_or(1.0, |residual| residual.rates(&self.laws, local, [0.0, 1.0]).0[1]);
-        TipContact { patch: local[1], per_approach }
+        Indentation::new(local[1], per_approach, self.laws[1].tip_radius)
     }
 
     /// What the contacts add to displacement in m and velocity in m/s of the plate's centre, with the patches `p` in m, the rates of

@@ -139,9 +139,9 @@ impl Profile for PlateProfile<'_> {
         self.indentation.gap(r) + self.deflection.value(self.plate[0], r) - self.centre[0]
     }
 
-    fn rate(&self, ring: Ring) -> f64 {
+    fn rate(&self, ring: Ring, closing: f64) -> f64 {
         let plate = self.deflection.value(self.plate[1], ring.radius());
-        self.closing(ring) * self.parting + plate - self.centre[1]
+        closing * self.parting + plate - self.centre[1]
     }
 
     fn patch(&self) -> f64 {

@@ -14,15 +14,14 @@
 //! sqrt(2 R h) of the pressure and grows outwards, and the force is a smooth function of the motion.
 
 use super::viscosity::Viscosity;
-use super::{Indentation, TipContact};
 use std::f64::consts::PI;
 
 /// Gap of the film and its rate, without the curvature of the inner body.
 pub trait Profile {
     /// Gap at the radius r in m: negative where the bodies overlap.
     fn gap(&self, r: f64) -> f64;
-    /// Mean rate of the gap in `ring`, m/s.
-    fn rate(&self, ring: Ring) -> f64;
+    /// Mean rate of the gap in `ring`, m/s, of which `closing` is what [`Self::closing`] gives.
+    fn rate(&self, ring: Ring, closing: f64) -> f64;
     /// Squared radius of the contact patch in m^2, 0 if the bodies do not touch on the axis.
     fn patch(&self) -> f64 {
         0.0
@@ -114,6 +113,8 @@ pub struct Neck {
 pub struct Face {
     /// The cell.
     pub ring: Ring,
+    /// What [`Profile::closing`] gives of it.
+    pub closing: f64,
     /// Radius of the face in m.
     pub radius: f64,
     /// Width of the film there in m, the minimal gap at least.
@@ -157,11 +158,6 @@ impl Film {
         self.rim
     }
 
-    /// The tip under `contact`.
-    pub fn indentation(&self, contact: TipContact) -> Indentation {
-        Indentation::new(contact, self.tip_radius)
-    }
-
     /// The minimal gap in m.
     pub fn minimum_gap(&self) -> f64 {
         self.minimum_gap
@@ -198,8 +194,9 @@ impl Film {
             let after = if cell + 1 == self.cells { end } else { start + scale * (power * ratio - 1.0) };
             let ring = Ring { squares: [face, next] };
             // what is squeezed out inside of the outer face flows through it
-            flow -= profile.rate(ring) * ring.area();
-            unit_flow += profile.closing(ring) * ring.area();
+            let closing = profile.closing(ring);
+            flow -= profile.rate(ring, closing) * ring.area();
+            unit_flow += closing * ring.area();
             let (face_radius, face_gap) = (next.sqrt(), gap(next));
             if face_gap < 0.0 {
                 let deepest = forces.overlap.map_or(0.0, |overlap| overlap.depth);
@@ -217,6 +214,7 @@ impl Film {
             forces.dissipation += flow * fall;
             forces.faces.push(Face {
                 ring,
+                closing,
                 radius: face_radius,
                 width,
                 fall,
@@ -233,10 +231,9 @@ impl Film {
             pressure = [pressure[0] + face.fall, pressure[1] + face.unit_fall];
             let loads = pressure.map(|pressure| pressure * face.ring.area());
             (forces.load[cell], forces.unit_load[cell]) = (loads[0], loads[1]);
-            let closing = profile.closing(face.ring);
-            forces.force += closing * loads[0];
-            forces.resistance += closing * loads[1];
-            forces.relief = [0, 1].map(|i| forces.relief[i] + (1.0 - closing) * loads[i]);
+            forces.force += face.closing * loads[0];
+            forces.resistance += face.closing * loads[1];
+            forces.relief = [0, 1].map(|i| forces.relief[i] + (1.0 - face.closing) * loads[i]);
         }
     }
 }

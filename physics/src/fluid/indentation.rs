@@ -9,18 +9,12 @@ use super::film::Ring;
 use std::f64::consts::PI;
 
 /// Contact of the tip with the plate, as the film around it sees it.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct TipContact {
-    /// Squared radius of the patch over the tip radius, m; of an open contact the distance on the axis, negative.
-    pub patch: f64,
-    /// Change of `patch` per approach of the bodies: 1 but for what they yield beyond half-spaces.
-    pub per_approach: f64,
-}
-
-/// A tip contact on a tip of known radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Indentation {
-    contact: TipContact,
+    /// Squared radius of the patch over the tip radius, m; of an open contact the distance on the axis, negative.
+    patch: f64,
+    /// Change of `patch` per approach of the bodies: 1 but for what they yield beyond half-spaces.
+    per_approach: f64,
     /// Radius of the tip, m.
     tip_radius: f64,
     /// Squared radius of the patch, m^2.
@@ -28,9 +22,10 @@ pub struct Indentation {
 }
 
 impl Indentation {
-    /// Of `contact` on a tip with the radius `tip_radius` in m.
-    pub fn new(contact: TipContact, tip_radius: f64) -> Self {
-        Self { contact, tip_radius, square: tip_radius * contact.patch.max(0.0) }
+    /// Of a tip with the radius `tip_radius` in m: the squared radius of the patch over it, `patch` in m, negative as the distance on the
+    /// axis where the contact is open, changes by `per_approach` with the approach of the bodies.
+    pub fn new(patch: f64, per_approach: f64, tip_radius: f64) -> Self {
+        Self { patch, per_approach, tip_radius, square: tip_radius * patch.max(0.0) }
     }
 
     /// Squared radius of the patch, m^2; 0 of an open contact.
@@ -41,11 +36,11 @@ impl Indentation {
     /// Gap in m at the radius `r` in m, at least that of the patch, between a flat plate and the tip, less r^2/(2 R).
     pub fn gap(&self, r: f64) -> f64 {
         if self.square <= 0.0 {
-            return -self.contact.patch;
+            return -self.patch;
         }
         let (a, beyond) = (self.square.sqrt(), (r * r - self.square).max(0.0).sqrt());
         let sunk = (2.0 * self.square - r * r) * (a / r).min(1.0).asin() + a * beyond;
-        sunk / (PI * self.tip_radius) - self.contact.patch
+        sunk / (PI * self.tip_radius) - self.patch
     }
 
     /// Mean closing speed of the gap in `ring` per closing speed of the bodies: at the radius r 2/pi acos(a/r), with the radius a of the
@@ -59,7 +54,7 @@ impl Indentation {
             let beyond = (square - self.square).max(0.0);
             square * (self.square / square).min(1.0).sqrt().acos() - (self.square * beyond).sqrt()
         });
-        self.contact.per_approach * 2.0 * (squeezed[1] - squeezed[0]) / ring.area()
+        self.per_approach * 2.0 * (squeezed[1] - squeezed[0]) / ring.area()
     }
 }
 
@@ -71,7 +66,7 @@ mod tests {
     const RADIUS: f64 = 5e-3;
 
     fn pressed(patch: f64) -> Indentation {
-        Indentation::new(TipContact { patch, per_approach: 1.0 }, RADIUS)
+        Indentation::new(patch, 1.0, RADIUS)
     }
 
     /// The gap outside Hertz's patch that opens with the power 3/2, and far away the undeformed one.

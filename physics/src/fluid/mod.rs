@@ -13,5 +13,5 @@ mod viscosity;
 pub use deflection::Deflection;
 pub use drag::Drag;
 pub use film::{Film, FilmForces, Profile, Ring};
-pub use indentation::{Indentation, TipContact};
+pub use indentation::Indentation;
 pub use viscosity::Viscosity;

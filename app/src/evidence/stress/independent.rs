@@ -166,7 +166,7 @@ fn solve(
         if let Some(fluid) = fluid {
             let approach = system.modal_approach(&y[..n]);
             let local = system.contact(approach, approach).map_or(approach, |(local, _)| local);
-            fluid.evaluate(&y[..n], &y[n..], system.tip_contact(local), &mut load);
+            fluid.evaluate(&y[..n], &y[n..], system.indentation(local), &mut load);
             for (acceleration, force) in dy[n + INNER..].iter_mut().zip(&load.force) {
                 *acceleration += force;
             }

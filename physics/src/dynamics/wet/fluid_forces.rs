@@ -3,7 +3,7 @@
 use crate::dynamics::system::{INNER, PLATE};
 use crate::fluid::deflection::PlateProfile;
 use crate::fluid::film::{CELLS, Film, FilmForces, Neck, Overlap};
-use crate::fluid::{Deflection, Drag, Ring, TipContact, Viscosity};
+use crate::fluid::{Deflection, Drag, Indentation, Viscosity};
 use crate::scene::{Fluid, Inner, Plate};
 
 /// Film and drag, of which at least one is there, on the inner body and the modes of the plate.
@@ -31,7 +31,6 @@ pub struct FluidLoad {
     /// Power dissipated in the film, and by the drag, W.
     pub dissipation: [f64; 2],
     film: FilmForces,
-    contact: TipContact,
 }
 
 impl FluidLoad {
@@ -102,8 +101,8 @@ impl FluidForces {
     }
 
     /// The forces in the state (`q`, `v`) of the coordinates of a [`System`](crate::dynamics::system::System), where the inner
-    /// body has the `contact`.
-    pub fn evaluate(&self, q: &[f64], v: &[f64], contact: TipContact, load: &mut FluidLoad) {
+    /// body's contact has the `indentation`.
+    pub fn evaluate(&self, q: &[f64], v: &[f64], indentation: Indentation, load: &mut FluidLoad) {
         const { assert!(PLATE == INNER + 1) };
         let size = self.size();
         let (q, v) = (&q[INNER..INNER + size], &v[INNER..INNER + size]);
@@ -111,12 +110,10 @@ impl FluidForces {
             forces.clear();
             forces.resize(size, 0.0);
         }
-        load.contact = contact;
         (load.resistance, load.film_force, load.drag_force, load.dissipation) = (0.0, 0.0, 0.0, [0.0; 2]);
         let per_mass = self.per_mass;
         if let Some((film, deflection)) = &self.film {
             let plate = [deflection.sum(&q[1..]), deflection.sum(&v[1..])];
-            let indentation = film.indentation(contact);
             let profile = PlateProfile::new(deflection, [&plate[0], &plate[1]], per_mass * v[0], indentation);
             film.solve(&profile, &mut load.film);
             let solved = &load.film;
@@ -144,13 +141,11 @@ impl FluidForces {
         let n = self.size();
         let per_mass = self.per_mass;
         let mut tangent = Tangent { size: n, per_rate: vec![0.0; n * n], per_place: vec![0.0; n * n] };
-        if let Some((film, deflection)) = &self.film {
+        if let Some((_, deflection)) = &self.film {
             // flow through a face per rate of each coordinate, and the gap there per coordinate
             let (mut flow, mut gap, mut shapes) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-            let indentation = film.indentation(load.contact);
             let centre = deflection.shapes_on_axis();
-            let at = |radius: f64, ring: Ring, values: &mut [f64]| {
-                let closing = indentation.closing(ring);
+            let at = |radius: f64, closing: f64, values: &mut [f64]| {
                 values[0] = -per_mass * closing;
                 deflection.shapes_at(radius, &mut values[1..]);
                 for (value, centre) in values[1..].iter_mut().zip(centre) {
@@ -158,10 +153,10 @@ impl FluidForces {
                 }
             };
             for face in &load.film.faces {
-                at(face.ring.radius(), face.ring, &mut shapes);
+                at(face.ring.radius(), face.closing, &mut shapes);
                 flow.iter_mut().zip(&shapes).for_each(|(flow, shape)| *flow -= face.ring.area() * shape);
                 // the growth of the patch is omitted
-                at(face.radius, face.ring, &mut gap);
+                at(face.radius, face.closing, &mut gap);
                 let rows = tangent.per_rate.chunks_exact_mut(n).zip(tangent.per_place.chunks_exact_mut(n));
                 for ((per_rate, per_place), own) in rows.zip(&flow) {
                     // a fall of the pressure loads everything inside of the face
@@ -225,9 +220,9 @@ mod tests {
             let (q, v) = ([0.0, 2e-7, 3e-8, -2e-8], [0.0, 0.02, 3e-3, -1e-3]);
             let at = |q: &[f64], v: &[f64]| {
                 let approach = forces.per_mass * q[1] - 40.0 * q[2] - 30.0 * q[3];
-                let contact = TipContact { patch: approach - gap, per_approach: 1.0 };
+                let indentation = Indentation::new(approach - gap, 1.0, 5e-3);
                 let mut load = FluidLoad::default();
-                forces.evaluate(q, v, contact, &mut load);
+                forces.evaluate(q, v, indentation, &mut load);
                 load
             };
             let load = at(&q, &v);

@@ -45,7 +45,7 @@ pub fn integrate(system: &System, fluid: &FluidForces, options: &Options) -> Res
     let (q, v) = system.initial_state();
     let mut start = FluidLoad::default();
     let local = system.modal_approach(&q);
-    fluid.evaluate(&q, &v, system.tip_contact(local), &mut start);
+    fluid.evaluate(&q, &v, system.indentation(local), &mut start);
     let trial = Trial {
         fluid: vec![[0.0; STAGES]; fluid.size()],
         loads: vec![FluidLoad::default(); STAGES],

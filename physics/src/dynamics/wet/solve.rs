@@ -153,7 +153,7 @@ impl Wet<'_> {
                 trial.local[i][j] = local[i];
                 defect.contact[i][j] = force[i] - trial.forces[i][j];
             }
-            self.fluid.evaluate(q, v, self.system.tip_contact(local), &mut trial.loads[j]);
+            self.fluid.evaluate(q, v, self.system.indentation(local), &mut trial.loads[j]);
             for (k, force) in trial.loads[j].force.iter().enumerate() {
                 defect.fluid[k][j] = force - trial.fluid[k][j];
             }

@@ -146,7 +146,7 @@ impl Profile for Plane {
         self.gap
     }
 
-    fn rate(&self, _: Ring) -> f64 {
+    fn rate(&self, _: Ring, _: f64) -> f64 {
         -self.speed
     }
 }

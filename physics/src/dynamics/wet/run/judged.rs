@@ -63,7 +63,7 @@ impl WetStepper<'_> {
         let (q, v) = self.motion_at(&self.wet.generalised(trial), place * h, h);
         let approach = system.modal_approach(&q);
         let Some((local, _)) = system.contact(approach, approach) else { return f64::INFINITY };
-        self.wet.fluid.evaluate(&q, &v, system.tip_contact(local), &mut self.late);
+        self.wet.fluid.evaluate(&q, &v, system.indentation(local), &mut self.late);
         let film: Stages = std::array::from_fn(|j| trial.loads[j].film_force);
         (self.late.film_force - dot(&self.collocation.interpolation(place), &film)).abs()
     }
