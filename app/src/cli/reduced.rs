@@ -5,7 +5,7 @@ use super::requested_model::{self, ModelRequest};
 use super::{Context, JsonArgument, kinds, progress};
 use crate::error::{ExitStatus, Result};
 use crate::file::write_file;
-use crate::format::{self, prefixed, with_unit};
+use crate::format::{self, model_name, prefixed, with_unit};
 use crate::kinds::SharedBodies;
 use crate::prediction::{Interval, Prediction};
 use crate::report::{self, history_format};
@@ -103,9 +103,9 @@ fn predicted_lines(intervals: &BTreeMap<&'static str, Interval>, summary: &Summa
 
 /// The summary as lines of name, value and unit; of the quantities those that the scene has.
 pub fn table(summary: &Summary, has: impl Fn(&str) -> bool) -> String {
-    let who = match (&summary.model, summary.modes) {
-        (Some(model), Some(modes)) => format!("model {model}, {modes} modes"),
-        _ => "reference".to_owned(),
+    let who = match &summary.model {
+        Some(model) => format!("model {}", model_name(model, summary.modes)),
+        None => "reference".to_owned(),
     };
     let mut lines = vec![format!("{} ({who})", summary.scene)];
     for &Quantity { name, unit, value, .. } in summary.quantities.iter().filter(|quantity| has(quantity.name))

@@ -1,6 +1,7 @@
 //! Models as the command line names them: A, B, C, `auto`, or `external`; and what is asked of one.
 
 use crate::error::{Error, Result};
+use crate::format::model_name;
 use crate::kinds;
 use crate::result::Choice;
 use crate::scene::{Model, Scene};
@@ -82,8 +83,7 @@ pub(super) fn choice_in_words(choice: &Choice) -> String {
         ))
     )];
     for tried in &choice.tried {
-        let plural = if tried.modes == 1 { "" } else { "s" };
-        let name = format!("model {}, {} mode{plural}", tried.model, tried.modes);
+        let name = format!("model {}", model_name(&tried.model.to_string(), Some(tried.modes)));
         let quantity = tried.quantity.as_ref().map_or(String::new(), |q| format!(" ({q})"));
         let mark = if tried.chosen { "  <- chosen" } else { "" };
         lines.push(format!("  {name:<26} {:>10}{quantity}{mark}", percent(tried.estimated_error)));

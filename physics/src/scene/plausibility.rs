@@ -50,8 +50,8 @@ mod tests {
     use super::doubts;
     use crate::scene::Scene;
 
-    fn scene(plate: &str, density: &str, relative: &str) -> Scene {
-        let text = format!(
+    fn text(plate: &str, density: &str, relative: &str) -> String {
+        format!(
             r#"
             name = "x"
             kind = "plate-impact"
@@ -61,8 +61,11 @@ mod tests {
             inner = {{ kind = "sphere", radius = "8 mm", material = "steel" }}
             tolerances.B = {{ efficiency = {{ relative = {relative} }} }}
             "#
-        );
-        Scene::parse("x.toml", &text).expect("valid")
+        )
+    }
+
+    fn scene(plate: &str, density: &str, relative: &str) -> Scene {
+        Scene::parse("x.toml", &text(plate, density, relative)).expect("valid")
     }
 
     #[test]
@@ -75,5 +78,19 @@ mod tests {
         assert!(found[2].contains("500 %"), "{found:?}");
         let rod = doubts(&scene("\"0.3 mm\"", "7780", "0.05"));
         assert!(rod[0].contains("6.667 times plate.radius"), "{rod:?}");
+    }
+
+    #[test]
+    fn a_film_too_wide_for_lubrication_theory_is_doubted() {
+        let of = |gap: &str| {
+            let fluid = format!("fluid = {{ viscosity = 0.01, density = 1000, minimum_gap = \"{gap}\" }}\n");
+            let text =
+                text("\"33 mm\"", "7780", "0.05").replace("tolerances.B", &format!("{fluid}tolerances.B"));
+            doubts(&Scene::parse("x.toml", &text).expect("valid"))
+        };
+        // at 0.01 of the tip's radius the exact force is larger by 0.01 (ln 100/5 + 0.9713) of that of lubrication theory
+        assert_eq!(of("10 um"), Vec::<String>::new());
+        assert!(of("80 um")[0].contains("about 2 % of the film's force"), "{:?}", of("80 um"));
+        assert!(of("5 mm").len() == 1, "{:?}", of("5 mm"));
     }
 }

@@ -7,7 +7,7 @@ use crate::flight::Chamber;
 use crate::scene::collision::{Collision, Rule, broken};
 use crate::scene::plausibility::{material, outside};
 use crate::scene::values::Node;
-use crate::scene::{Bodies, Flight, Flyer, Geometry, Material, Plate, Shape};
+use crate::scene::{Bodies, Flight, Fluid, Flyer, Geometry, Material, Plate, Shape};
 
 /// Least and largest thickness of a plate over its radius. Of a longer rod next to nothing reaches the far face before all is over.
 const SLENDERNESS: [f64; 2] = [1e-6, 10.0];
@@ -16,6 +16,9 @@ const LENGTH: [f64; 2] = [1e-6, 1.0];
 /// Longest time in which a stack charges, in radians of its slowest vibration: charged more slowly it presses on the plate and does not
 /// strike it.
 const SLOWEST_CHARGE: f64 = 1e5;
+
+/// Share of a film's force that lubrication theory may neglect without a word.
+const NEGLECTED: f64 = 0.01;
 
 /// Keys of `reference` that solid elements alone have.
 const SOLID_KEYS: [&str; 3] = ["elements_per_thickness", "element_order", "rigid"];
@@ -181,8 +184,23 @@ impl Bodies for PlateImpact {
                 plate.thickness / plate.radius
             ));
         }
+        found.extend(self.fluid.as_ref().and_then(|fluid| wide_gap(fluid, inner.shape.tip_radius())));
         found
     }
+}
+
+/// A doubt about a film that is too wide at its `minimum_gap` for lubrication theory over a tip of `tip_radius` m.
+fn wide_gap(fluid: &Fluid, tip_radius: f64) -> Option<String> {
+    let width = fluid.minimum_gap / tip_radius;
+    // what follows the leading term of Stokes flow between a sphere and a plane (Cooley and O'Neill, Mathematika 16, 1969)
+    let neglected = width * (0.9713 - 0.2 * width.min(1.0).ln());
+    (fluid.squeeze_film && neglected > NEGLECTED).then(|| {
+        format!(
+            "fluid.minimum_gap = {:e} m is {width:.2e} times the inner tip's radius: lubrication theory needs a narrow gap and neglects forces of about {:.0} % of the film's force here",
+            fluid.minimum_gap,
+            100.0 * neglected
+        )
+    })
 }
 
 /// Resistance of the drive in Ohm of a body of the `shape`, and the largest with which it strikes; 0 and infinite without a drive.
