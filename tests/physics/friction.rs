@@ -365,6 +365,38 @@ fn little_friction_is_nearly_none_off_centre() {
     assert!(slides(&run(&glancing)));
 }
 
+/// A body that slides over the plate without friction transfers as much as one that strikes where it is in the mean over the impulse: the plate
+/// of the second has its shapes there, that of the first has moved on by their slopes.
+#[test]
+fn a_contact_that_slides_transfers_as_one_further_out() {
+    let text =
+        include_str!("../../scenes/validation/off-centre-oblique.toml").replace("friction    = 0.3", "");
+    let (along, across) = (3.0, 0.5);
+    let run = |offset: f64, [along, across]: [f64; 2]| {
+        let text = text
+            .replace("\"4 mm\"", &format!("{offset:e}"))
+            .replace("\"550 mm/s\"", &format!("{:e}", f64::hypot(along, across)))
+            .replace("\"30 deg\"", &format!("{:e}", f64::atan2(along, across)));
+        let scene = Scene::parse("test.toml", &text).expect("valid");
+        kinds::of(&scene).model(&scene, Model::B, None).expect("model").run_with_history(1e-7).expect("run")
+    };
+    let slid = run(4e-3, [along, across]);
+    let time = &slid.history.time;
+    let force = slid.history.curve("outer_force").expect("a force");
+    let sum = |weight: &dyn Fn(f64) -> f64| -> f64 {
+        let mean = |k: usize| 0.5 * (force[k] * weight(time[k]) + force[k + 1] * weight(time[k + 1]));
+        (0..time.len() - 1).map(|k| mean(k) * (time[k + 1] - time[k])).sum()
+    };
+    let way = along * sum(&|t| t) / sum(&|_| 1.0);
+    let [still, further] = [4e-3, 4e-3 + way].map(|offset| run(offset, [0.0, across]).summary);
+    for name in ["outer_velocity_final", "inner_velocity_final", "inner_force_peak"] {
+        let [slid, still, further] =
+            [&slid.summary, &still, &further].map(|of| of.value(name).expect("a value"));
+        let (moved, error) = ((further - still).abs(), (further - slid).abs());
+        assert!(moved > 2e-3 * still.abs() && error < 0.05 * moved, "{name}: {still} {further} {slid}");
+    }
+}
+
 /// Where friction changes a force to more than its double, in a thick plate with a small body behind, there is a result.
 #[test]
 fn strong_friction_off_centre_has_a_result() {

@@ -41,6 +41,8 @@ pub struct Sliding<'a> {
     pub modes: &'a [SurfaceMode],
     /// Relative velocity of the surfaces at t = 0 in m/s: of the outer and the inner body over what they touch.
     pub velocity: [f64; 2],
+    /// Velocity along x of the bodies' centres at t = 0, m/s.
+    pub centres: [f64; 2],
     /// Where the surfaces of what they strike turn as they move along themselves.
     pub tilt: Option<Tilt>,
 }
@@ -64,6 +66,9 @@ pub struct Slid {
     pub dissipated: [f64; 2],
     /// Impulses in N s along x on the bodies by forces across surfaces that turn.
     pub tilted: [f64; 2],
+    /// How far both contacts have moved along x over the struck body, m: the mean over the impulses across the surfaces; known where the
+    /// surfaces turn.
+    pub way: [f64; 2],
     /// Times in s, and the forces on the struck body along the surface over those across it, by outer and inner body.
     pub course: Vec<(f64, [f64; 2])>,
     /// Largest velocity in m/s at which the forces along the surfaces move a contact across them.
@@ -82,8 +87,9 @@ impl Sliding<'_> {
         let mut velocity = self.velocity;
         let mut surfaces = MovingSurfaces::new(self.modes);
         let mut earlier = self.forces();
-        // of the surfaces along x so far, m
-        let mut moved = [0.0; 2];
+        // of the surfaces along x so far, m, and of the contacts on them
+        let (mut moved, mut way) = ([0.0; 2], [0.0; 2]);
+        let mut pressed = [0.0; 2];
         let last = time.len().saturating_sub(1);
         let apart = finer.recip().max(1.0) as usize;
         for start in (0..last).step_by(apart) {
@@ -111,8 +117,12 @@ impl Sliding<'_> {
                 for (i, contact) in self.contacts.iter_mut().enumerate() {
                     let surface = by_pressing[i] + by_friction[i] + yields[i];
                     if let Some(Tilt { arm, masses }) = self.tilt {
-                        let force = 0.5 * (across[i] + press[i].force);
-                        let impulse = h * force * (moved[i] + 0.5 * surface) / arm;
+                        let push = 0.5 * h * (across[i] + press[i].force);
+                        let impulse = push * (moved[i] + 0.5 * surface) / arm;
+                        let centre = self.centres[i] + (slid.tilted[i] - slid.impulse[i]) / masses[i];
+                        way[i] += centre * h - surface;
+                        pressed[i] += push;
+                        slid.way[i] += push * way[i];
                         slid.tilted[i] += impulse;
                         velocity[i] += impulse / masses[i];
                     }
@@ -131,6 +141,7 @@ impl Sliding<'_> {
             (0..2).filter(|i| to[*i].force > 0.0).for_each(|i| ratios[i] = forces[i] / to[i].force);
             slid.course.push((time[end], ratios));
         }
+        (0..2).filter(|i| pressed[*i] > 0.0).for_each(|i| slid.way[i] /= pressed[i]);
         for (i, contact) in self.contacts.iter().enumerate() {
             slid.dissipated[i] = contact.as_ref().map_or(0.0, TangentialContact::dissipated);
         }
@@ -184,6 +195,7 @@ mod tests {
             mobility: [1.0; 2],
             modes: &modes,
             velocity: [0.0; 2],
+            centres: [3.0, 0.0],
             tilt: Some(Tilt { arm, masses }),
         };
         let slid = sliding.slide(&time, &presses, 1.0);

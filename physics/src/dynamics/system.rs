@@ -259,6 +259,17 @@ impl System {
         Self { residual: (!residual.is_zero()).then_some(residual), ..self.clone() }
     }
 
+    /// The same with contacts that have moved by `way` m along x over a plate whose faces are `arm` m away from its middle: there its modes
+    /// have moved on by their slope (Kirchhoff).
+    #[must_use]
+    pub fn touched_at(&self, way: [f64; 2], arm: f64) -> Self {
+        let mut system = self.clone();
+        for (k, along) in self.elastic().zip(&self.along) {
+            (0..2).for_each(|i| system.approach[i][k] -= way[i] * along[i] / arm);
+        }
+        system
+    }
+
     /// Rates of both contact forces in N/s with the patches `local` in m and the modal approaches' rates `rate` in m/s.
     pub fn force_rate(&self, local: [f64; 2], rate: [f64; 2]) -> [f64; 2] {
         self.tangent(local).map(|row| row[0] * rate[0] + row[1] * rate[1])

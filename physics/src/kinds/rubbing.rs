@@ -336,7 +336,8 @@ impl Rubbing {
             rubs.then(|| TangentialContact::new([tip, face], frictions[i], widest))
         };
         let contacts = [contact(0), contact(1)];
-        let sliding = Sliding { contacts, mobility: self.mobilities(), modes, velocity, tilt: self.tilt };
+        let (mobility, tilt) = (self.mobilities(), self.tilt);
+        let sliding = Sliding { contacts, mobility, modes, velocity, centres: [along, 0.0], tilt };
         Ok(sliding.slide(time, &presses, finer))
     }
 

@@ -1,25 +1,31 @@
-//! Friction that bends or turns what is struck: the motion across the surfaces and that along them, in turn until both settle.
+//! Friction that bends or turns what is struck, and contacts that move over it: the motion across the surfaces and that along them, in turn
+//! until both settle.
+//!
+//! A body that strikes a plate obliquely moves over it while they touch. Off-centre it comes to where the modes move more or less; of its way
+//! counts the mean over the impulse, which is right to the first order where the plate answers slowly against the contact.
 
 use super::{Rubbing, StruckSurface};
 use crate::dynamics::error_control::differences;
 use crate::dynamics::friction_load::FrictionLoad;
 use crate::dynamics::integration::{Integration, Options, Settled};
-use crate::dynamics::sliding::Slid;
+use crate::dynamics::sliding::{Slid, Tilt};
 use crate::dynamics::surface_modes::SurfaceMode;
 use crate::dynamics::system::System;
 use crate::error::Result;
+use std::borrow::Cow;
 
-/// Velocity across the surfaces by friction, over the speed, up to which its effect is negligible.
-const NEGLIGIBLE_ACROSS: f64 = 1e-4;
+/// Velocity across the surfaces by friction, over the speed, up to which its effect is negligible; and relative change of what the first mode
+/// does at a contact that has moved.
+const NEGLIGIBLE: f64 = 1e-4;
 /// Error of velocities, over the speed, and force peaks, relative, that is in order.
 pub(in crate::kinds) const SETTLED: f64 = 1e-4;
 /// Rounds at most; two are enough where they converge at all.
 const MOST_ROUNDS: usize = 6;
 
 impl Rubbing {
-    /// The impact of `system` that `run` finds, with friction's effect on the motion across the surfaces if there is one, and the contact
-    /// forces as its history, or the one that the `options` request. Where friction excites vibrations of what is struck more and more,
-    /// rounds diverge after they have come near: then the nearest counts.
+    /// The impact of `system` that `run` finds, with the effect of the motion along the surfaces on that across them if there is one, and the
+    /// contact forces as its history, or the one that the `options` request. Where friction excites vibrations of what is struck more and
+    /// more, rounds diverge after they have come near: then the nearest counts.
     ///
     /// # Errors
     /// As `run` and [`Rubbing::solve`].
@@ -29,66 +35,75 @@ impl Rubbing {
         options: &Options,
         run: impl Fn(&System, &Options) -> Result<Integration>,
     ) -> Result<Integration> {
-        let modes = match &self.struck {
-            StruckSurface::Moving(modes) if self.has_friction() && modes.iter().any(couples) => modes,
-            _ => return run(system, options),
-        };
+        let StruckSurface::Moving(modes) = &self.struck else { return run(system, options) };
+        let rubs = self.has_friction() && modes.iter().any(couples);
+        if !(rubs || self.moves_on(system)) {
+            return run(system, options);
+        }
         let with_forces = self.keeping_forces(system, &Options { sample_interval: None, ..*options });
         let smooth = run(system, &with_forces)?;
         let slid = self.slide(&smooth)?;
-        // friction changes little: steps that are right without it are right with it
+        // what happens along the surfaces changes little: steps that are right without it are right with it
         let converged = smooth.converged.or(options.converged);
         let (once, error_estimate) = (Options { converged, ..with_forces }, smooth.error_estimate);
-        let load = FrictionLoad { course: Vec::new(), along: participations(system, modes) };
-        let mut loaded = System { friction_load: Some(load), ..system.clone() };
+        let along = rubs.then(|| participations(system, modes));
         let mut settled = Settled { error: 0.0, slid };
-        let (mut found, mut last) = (smooth, system);
-        if settled.slid.across > NEGLIGIBLE_ACROSS * system.speed {
-            let mut change_before = f64::INFINITY;
-            let mut course = Vec::new();
-            for _ in 0..MOST_ROUNDS {
-                let (next, change) = self.loaded(&mut loaded, (&found, &settled.slid), &once, &run)?;
-                if change >= change_before {
-                    settled.error = change;
-                    break;
-                }
-                // each round leaves the same share of the change before
-                let share = change / change_before;
-                settled.error = if share > 0.0 { change * share / (1.0 - share) } else { change };
-                course = std::mem::take(&mut settled.slid.course);
-                settled.slid =
-                    Slid { error: settled.slid.error, ..self.slide_in_steps(&next, settled.slid.finer)? };
-                (found, change_before) = (next, change);
-                if settled.error <= SETTLED {
-                    break;
-                }
+        let (mut found, mut last) = (smooth, Cow::Borrowed(system));
+        let is_notable = rubs && settled.slid.across > NEGLIGIBLE * system.speed
+            || self.change(system, settled.slid.way) > NEGLIGIBLE;
+        let mut change_before = f64::INFINITY;
+        for _ in 0..if is_notable { MOST_ROUNDS } else { 0 } {
+            let changed = self.changed(system, along.as_deref(), &settled.slid);
+            let next = run(&changed, &once)?;
+            let change = change(system, [&found, &next]);
+            if change >= change_before {
+                settled.error = change;
+                break;
             }
-            loaded.friction_load.iter_mut().for_each(|load| load.course.clone_from(&course));
-            last = &loaded;
+            // each round leaves the same share of the change before
+            let share = change / change_before;
+            settled.error = if share > 0.0 { change * share / (1.0 - share) } else { change };
+            settled.slid =
+                Slid { error: settled.slid.error, ..self.slide_in_steps(&next, settled.slid.finer)? };
+            (found, last, change_before) = (next, Cow::Owned(changed), change);
+            if settled.error <= SETTLED {
+                break;
+            }
         }
         if *options != with_forces {
-            found = run(last, &Options { converged, ..*options })?;
+            found = run(&last, &Options { converged, ..*options })?;
         }
         Ok(Integration { friction: Some(settled), converged, error_estimate, ..found })
     }
 
-    /// The impact of the `loaded` system under the load of the round before, in which friction did `slid` and which came to `found`; with the
-    /// change of velocities, over the speed, and force peaks, relative, from that.
-    fn loaded(
-        &self,
-        loaded: &mut System,
-        (found, slid): (&Integration, &Slid),
-        options: &Options,
-        run: impl Fn(&System, &Options) -> Result<Integration>,
-    ) -> Result<(Integration, f64)> {
-        if let Some(load) = &mut loaded.friction_load {
-            load.course.clone_from(&slid.course);
-        }
-        let next = run(loaded, options)?;
-        let peaks = [found, &next].map(|result| result.contacts.map(|contact| contact.force_peak));
-        let [velocity, force] = differences(loaded, [found.velocity, next.velocity], peaks);
-        Ok((next, velocity.max(force)))
+    /// The `system` with what its motion along the surfaces does, which was `slid` in the run before: the forces along them move modes with the
+    /// participations `along` if there is friction, and the contacts move over the plate.
+    fn changed(&self, system: &System, along: Option<&[[f64; 2]]>, slid: &Slid) -> System {
+        let mut changed =
+            self.tilt.map_or_else(|| system.clone(), |tilt| system.touched_at(slid.way, tilt.arm));
+        changed.friction_load =
+            along.map(|along| FrictionLoad { course: slid.course.clone(), along: along.to_vec() });
+        changed
     }
+
+    /// Whether the outer body moves over a plate where its modes change along x.
+    fn moves_on(&self, system: &System) -> bool {
+        self.tilt.is_some() && self.outer.angle != 0.0 && system.along.iter().any(|along| along[0] != 0.0)
+    }
+
+    /// Relative change of what the first mode does at the outer contact of `system` when that has moved by its `way` in m.
+    fn change(&self, system: &System, way: [f64; 2]) -> f64 {
+        let first = system.elastic().zip(&system.along).next();
+        let of = |tilt: Tilt| first.map(|(k, along)| way[0] * along[0] / (tilt.arm * system.approach[0][k]));
+        self.tilt.and_then(of).map_or(0.0, f64::abs)
+    }
+}
+
+/// Change of velocities, over the speed of `system`, and force peaks, relative, between two results of it.
+fn change(system: &System, results: [&Integration; 2]) -> f64 {
+    let peaks = results.map(|result| result.contacts.map(|contact| contact.force_peak));
+    let [velocity, force] = differences(system, results.map(|result| result.velocity), peaks);
+    velocity.max(force)
 }
 
 /// Whether `mode` moves the surfaces along themselves and across.
