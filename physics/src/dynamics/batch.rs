@@ -87,7 +87,7 @@ impl OscillatorBatch {
             approach: system.approach[0][place],
             feed,
         });
-        let along = system.friction_load.iter().flat_map(|load| load.along.chunks(LANES));
+        let along = system.tangential_load.iter().flat_map(|load| load.along.chunks(LANES));
         let along = along
             .map(|chunk| [0, 1].map(|i| filled_up(&chunk.iter().map(|along| along[i]).collect::<Vec<_>>())));
         Self { blocks: blocks.collect(), fed: fed.collect(), along: along.collect() }
@@ -374,7 +374,7 @@ mod tests {
     use super::*;
     use crate::body::kirchhoff;
     use crate::dynamics::MovingBody;
-    use crate::dynamics::friction_load::FrictionLoad;
+    use crate::dynamics::tangential_load::TangentialLoad;
     use crate::scene::Scene;
     use approx::assert_relative_eq;
 
@@ -417,7 +417,7 @@ mod tests {
         let plate = kirchhoff::modes(&setup.plate, 16).expect("modes");
         let mut system = System::of(&bodies, &plate, &setup.plate.material, [0.0; 2]);
         let along = (0..system.oscillators.len()).map(|k| [system.approach[1][k], system.approach[0][k]]);
-        system.friction_load = Some(FrictionLoad { course: Vec::new(), along: along.collect() });
+        system.tangential_load = Some(TangentialLoad { course: Vec::new(), along: along.collect() });
         let batch = OscillatorBatch::new(&system);
         let rest = vec![f64x4::ZERO; batch.blocks.len()];
         let forces = [[300.0, 2e8, -1e14, 4e19], [-100.0, 5e7, 3e13, -2e19]];

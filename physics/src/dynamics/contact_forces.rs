@@ -11,6 +11,7 @@ use super::contact_balance::work;
 use super::point_laws::{HertzPoints, PointLaw, ResidualPoints, Visit};
 use super::step_table::StepTable;
 use super::system::{System, dot};
+use super::tangential_load::StepLoad;
 use crate::numerics::stages::{STAGES, Stages};
 use wide::f64x4;
 
@@ -38,9 +39,12 @@ pub struct Course {
     pub stored: f64,
     /// Kinetic and strain energy of the bodies at the end in J.
     pub motion: f64,
-    /// Forces along the surfaces at the nodes in N, where they are known as shares of those across, and their work on the bodies in J.
+    /// Forces along the surfaces at the nodes in N, where they are known as shares of those across; and the work on the bodies in J of what
+    /// happens along the surfaces.
     pub along: [Stages; 2],
     pub along_work: f64,
+    /// Part of the approaches that comes of the contacts' ways over a plate, m.
+    pub shift: [Points; 2],
 }
 
 impl Course {
@@ -88,7 +92,7 @@ struct Unknowns {
 }
 
 /// Values at start, nodes and end of a step.
-fn points(start: f64, stages: Stages, end: f64) -> Points {
+pub(super) fn points(start: f64, stages: Stages, end: f64) -> Points {
     std::array::from_fn(|p| match p {
         0 => start,
         _ if p == POINTS - 1 => end,
@@ -109,22 +113,26 @@ impl<'a> StepSolver<'a> {
     }
 
     /// Solves a step of the length of `table` that follows on `before`, from the state `now` into `next`; `None` if
-    /// the sweeps do not settle within `force_error` or the contact has no equilibrium. Forces along the surfaces
-    /// are `ratios` of those across them.
+    /// the sweeps do not settle within `force_error` or the contact has no equilibrium. Along the surfaces happens
+    /// what `load` has.
     pub fn solve(
         &mut self,
         table: &StepTable,
         before: &Course,
         now: (&[f64x4], &[f64x4]),
         (next_q, next_v): (&mut [f64x4], &mut [f64x4]),
-        ratios: Option<&[Stages; 2]>,
+        load: Option<&StepLoad>,
         force_error: ForceError,
     ) -> Option<Course> {
-        let free = table.free_approach(&self.batch, self.system.gap, now.0, now.1);
-        let rubbed = ratios.zip(table.load.as_ref());
+        let mut free = table.free_approach(&self.batch, self.system.gap, now.0, now.1);
+        let loaded = load.zip(table.load.as_ref()).map(|(load, answers)| {
+            let along = table.free_motion(&self.batch, |k| self.batch.along[k], now.0, now.1);
+            free = load.moved(free, along);
+            (load, answers, along)
+        });
         let [own0, mutual, own1] = &table.coupling;
-        let with_friction = rubbed.map(|(ratios, load)| load.coupling(&table.coupling, ratios));
-        let coupling = match &with_friction {
+        let under_load = loaded.map(|(load, answers, _)| answers.coupling(&table.coupling, load));
+        let coupling = match &under_load {
             Some(all) => all.each_ref(),
             None => [own0, mutual, mutual, own1],
         };
@@ -144,17 +152,19 @@ impl<'a> StepSolver<'a> {
         let (unknowns, contraction) = solved?;
         self.contraction = contraction;
         let (mut end, mut motion) = table.advance(&self.batch, &unknowns.force, now, (next_q, next_v));
-        let (mut along, mut along_work) = ([[0.0; STAGES]; 2], 0.0);
-        if let Some((ratios, load)) = rubbed {
-            along = [0, 1].map(|i| std::array::from_fn(|j| ratios[i][j] * unknowns.force[i][j]));
+        let (mut along, mut along_work, mut shift) = ([[0.0; STAGES]; 2], 0.0, [[0.0; POINTS]; 2]);
+        if let Some((load, answers, free)) = loaded {
+            along = load.forces(&unknowns.force);
             let (added, all) = table.advance_along(&self.batch, &along, (next_q, next_v));
-            (end, motion) = ([end[0] + added[0], end[1] + added[1]], all);
-            let free = table.free_motion(&self.batch, |k| self.batch.along[k], now.0, now.1);
-            let moved = load.along(&along, &unknowns.force);
+            let forced = answers.along(&along, &unknowns.force);
             let [start, last] = [now.0, next_q].map(|q| self.batch.moved_along(q));
+            let moved = [0, 1].map(|i| points(start[i], (free[i] + forced[i]).to_array(), last[i]));
+            shift = load.shift(&moved);
+            motion = all;
             for i in 0..2 {
-                let nodes = (free[i] + moved[i]).to_array();
-                along_work += work(self.collocation, &along[i], &points(start[i], nodes, last[i]));
+                end[i] += added[i] + shift[i][POINTS - 1];
+                along_work += work(self.collocation, &along[i], &moved[i]);
+                along_work += work(self.collocation, &unknowns.force[i], &shift[i]);
             }
         }
         let end_approach = [end[0] - self.system.gap[0], end[1] - self.system.gap[1]];
@@ -176,6 +186,7 @@ impl<'a> StepSolver<'a> {
             motion,
             along,
             along_work,
+            shift,
             local_approach: join(local, &unknowns.local, end_local),
             force: join(force, &unknowns.force, end_force),
         })

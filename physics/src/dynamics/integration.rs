@@ -4,9 +4,9 @@
 use super::contact_balance::ContactBalance;
 use super::driver::StopReason;
 use super::free_flight;
-use super::friction_load::GivenLoad;
 use super::sliding::Slid;
 use super::system::{System, dot};
+use super::tangential_load::GivenLoad;
 use crate::contact::Press;
 use crate::result::{History, Losses};
 
@@ -271,7 +271,7 @@ pub(super) fn unexplained_momentum(
         let most = moved[0].abs().max(moved[1].abs());
         let [struck, pushed] = moved.map(|moved| moved / most);
         let pushed_along =
-            system.friction_load.as_ref().map_or(0.0, |load| dot(&load.along[k], &along.impulse));
+            system.tangential_load.as_ref().map_or(0.0, |load| dot(&load.along[k], &along.impulse));
         let momentum = (v[k] - pushed_along) / most + struck * outer.impulse + pushed * inner.impulse;
         largest = largest.max((momentum + fluid.film_impulse).abs());
     }

@@ -4,19 +4,19 @@ mod judged;
 
 use self::judged::StepVerdict;
 use super::batch::in_blocks;
-use super::collocation::{Collocation, POINTS};
+use super::collocation::{Collocation, POINTS, derivative, horner};
 use super::contact_balance::{ContactBalance, StepCourse};
 use super::contact_forces::{Course, ForceError, StepSolver};
 use super::driver::{self, Stepper};
 use super::force_peak::SolvedStep;
 use super::free_flight::{self, Flight};
-use super::friction_load::GivenLoad;
 use super::heating;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::recorder::Recorder;
 use super::step_bounds::{AdaptedLength, EnergyAccount, StepBounds, base_step, force_scale, momentum_scale};
 use super::step_tables::StepTables;
 use super::system::{System, dot};
+use super::tangential_load::GivenLoad;
 use crate::error::{Error, Result};
 use crate::numerics::stages::{STAGES, Stages};
 use std::sync::LazyLock;
@@ -29,6 +29,8 @@ const CHATTER: u32 = 1000;
 const TURN_PER_STEP: f64 = 0.1;
 /// Share of a force's admissible defect at which the sweeps may end.
 const CONVERGED: f64 = 0.1;
+/// Corrections of a touch by what the contacts move over the plate until then; each leaves a hundredth.
+const LANDINGS: usize = 4;
 /// Level of the first step after a touch.
 const START_LEVEL: i32 = 4;
 
@@ -121,12 +123,43 @@ impl<'a> DryStepper<'a> {
             && free_flight::inner_is_gone(system, &flat(&self.q)[..n], &flat(&self.v)[..n])
     }
 
+    /// When a flight ends that would take `duration` s if the contacts stayed where they are over the plate, s.
+    fn landing(&self, duration: f64) -> f64 {
+        let system = self.solver.system;
+        if system.tangential_load.is_none() {
+            return duration;
+        }
+        let mut flight = duration;
+        for _ in 0..LANDINGS {
+            let (mut q, mut v) = (self.q.clone(), self.v.clone());
+            free_flight::advance(
+                system,
+                flight,
+                bytemuck::cast_slice_mut(&mut q),
+                bytemuck::cast_slice_mut(&mut v),
+            );
+            let seen = system.touched_at(self.time + flight);
+            let approach = seen.modal_approach(flat(&q));
+            let closing = usize::from(approach[1] > approach[0]);
+            let rate = dot(&seen.approach[closing], &flat(&v)[..system.size()]);
+            let later = -approach[closing] / rate;
+            if !(rate > 0.0 && later.abs() < 0.5 * flight) {
+                break;
+            }
+            flight += later;
+        }
+        flight
+    }
+
     /// Flies to the next touch; `false` if there is none before the end.
     fn fly(&mut self) -> Result<bool> {
         let system = self.solver.system;
         let (q, v) = (flat(&self.q), flat(&self.v));
-        let (flight, more) = match free_flight::next_contact(system, q, v, self.end_time - self.time)? {
-            Flight::Contact(duration) if self.time + duration < self.end_time => (duration, true),
+        let seen = system.touched_at(self.time);
+        let (flight, more) = match free_flight::next_contact(&seen, q, v, self.end_time - self.time)? {
+            Flight::Contact(duration) if self.time + duration < self.end_time => {
+                (self.landing(duration), true)
+            }
             Flight::Over if self.end_time.is_infinite() => return Ok(false),
             _ => (self.end_time - self.time, false),
         };
@@ -142,9 +175,8 @@ impl<'a> DryStepper<'a> {
             bytemuck::cast_slice_mut(&mut self.v),
         );
         self.time += flight;
-        let (batch, v) = (&self.solver.batch, &self.v);
-        let approach = self.solver.system.modal_approach(flat(&self.q));
-        let rates = batch.approach_rate(v);
+        let approach = self.solver.system.touched_at(self.time).modal_approach(flat(&self.q));
+        let rates = self.solver.batch.approach_rate(&self.v);
         for ((contact, approach), rate) in self.contacts.iter_mut().zip(approach).zip(rates) {
             // a parabola that comes back to zero at this rate was a quarter of it times its duration deep
             contact.add_flight((0.25 * rate * flight).max(-approach));
@@ -178,13 +210,13 @@ impl<'a> DryStepper<'a> {
                 None => self.tables.get(batch, collocation, self.length.level(), h),
             };
             let h = table.h;
-            let ratios = system.friction_load.as_ref().map(|load| load.step(collocation, self.time, h));
+            let load = system.tangential_load.as_ref().map(|load| load.step(collocation, self.time, h));
             let trial = self.solver.solve(
                 table,
                 &self.course,
                 (&self.q, &self.v),
                 (&mut self.next_q, &mut self.next_v),
-                ratios.as_ref(),
+                load.as_ref(),
                 ForceError {
                     absolute: least.map(|least| {
                         let peak = CONVERGED * share * self.bounds.force_defect * least;
@@ -282,7 +314,7 @@ impl<'a> DryStepper<'a> {
             contact.book(self.solver.collocation, &course);
         }
         self.add_peaks(&trial);
-        if self.solver.system.friction_load.is_some() {
+        if self.solver.system.tangential_load.is_some() {
             self.given.book(self.solver.collocation, trial.h, &trial.along, trial.along_work);
         }
         self.add_heat(trial.h, &trial.stages()[0]);
@@ -309,7 +341,20 @@ impl<'a> DryStepper<'a> {
         let forces = || trial.stages().map(|stages| collocation.derivatives(&stages, h));
         let local = |approach: [f64; 2]| [0, 1].map(|i| approach[i] - system.gap[i]);
         let along = || trial.along.map(|stages| collocation.derivatives(&stages, h));
-        let pushed = |t: f64| system.friction_load.as_ref().map(|_| batch.pushed_after(&along(), t));
+        // with its derivatives by the place
+        let shift = trial.shift.map(|shift| collocation.through(&shift));
+        let add_shift = |motion: &mut [[f64; 2]], place: f64| {
+            if system.tangential_load.is_none() {
+                return;
+            }
+            for (i, shift) in shift.iter().enumerate() {
+                let slope = derivative(shift);
+                let values =
+                    [horner(shift, place), horner(&slope, place), horner(&derivative(&slope), place)];
+                motion.iter_mut().zip(values).for_each(|(row, value)| row[i] += value);
+            }
+        };
+        let pushed = |t: f64| system.tangential_load.as_ref().map(|_| batch.pushed_after(&along(), t));
         let motion = |place: f64| {
             let mut motion = batch.approach_after((&self.q, &self.v), &forces(), place * h);
             if let Some(pushed) = pushed(place * h) {
@@ -318,11 +363,13 @@ impl<'a> DryStepper<'a> {
                 }
             }
             let [approach, rate, acceleration] = motion;
-            [
+            let mut motion = [
                 local(approach),
                 rate.map(|rate| rate * h),
                 acceleration.map(|acceleration| acceleration * (h * h)),
-            ]
+            ];
+            add_shift(&mut motion, place);
+            motion
         };
         let samples = |intervals: usize| {
             let mut samples = batch.approaches_within((&self.q, &self.v), &forces(), h, intervals);
@@ -334,8 +381,10 @@ impl<'a> DryStepper<'a> {
                     }
                 }
             }
-            for [approach, rate] in &mut samples {
-                (*approach, *rate) = (local(*approach), rate.map(|rate| rate * h));
+            for (k, sample) in samples.iter_mut().enumerate() {
+                let [approach, rate] = *sample;
+                *sample = [local(approach), rate.map(|rate| rate * h)];
+                add_shift(sample, k as f64 / intervals as f64);
             }
             samples
         };

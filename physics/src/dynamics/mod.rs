@@ -14,7 +14,6 @@ pub mod error_control;
 pub mod even_steps;
 mod force_peak;
 mod free_flight;
-pub mod friction_load;
 mod heating;
 pub(crate) mod impulse_splitting;
 pub mod integration;
@@ -29,6 +28,7 @@ mod step_table;
 mod step_tables;
 pub mod surface_modes;
 pub mod system;
+pub mod tangential_load;
 pub mod wet;
 
 pub use balance_check::balance_check;

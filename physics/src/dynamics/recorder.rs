@@ -89,7 +89,7 @@ impl<'a, const P: usize> Recorder<'a, P> {
             return Ok(());
         }
         let [b0, b1] = &self.system.approach;
-        let load = self.system.friction_load.as_ref();
+        let load = self.system.tangential_load.as_ref();
         self.step_under(time, h, q, v, forces[0], |k| {
             std::array::from_fn(|l| {
                 let across = -(b0[k] * forces[0][l] + b1[k] * forces[1][l]);
@@ -169,7 +169,7 @@ impl<'a, const P: usize> Recorder<'a, P> {
         if self.history.time.last().is_some_and(|last| *last >= time) {
             return;
         }
-        let approach = system.modal_approach(q);
+        let approach = system.touched_at(time).modal_approach(q);
         let (patch, forces) = system.contact(approach, approach).unwrap_or(([f64::NAN; 2], [f64::NAN; 2]));
         let rate = [0, 1].map(|i| dot(&system.approach[i], v));
         let local = system.motion_of_centre(patch, rate, forces);

@@ -1,10 +1,11 @@
 //! Motion along the surfaces and spin of bodies that touch with friction.
 //!
 //! The normal motion is solved before. What forces along the surface do to it is nothing on a flat, symmetric surface; elsewhere see
-//! [`super::friction_load`].
+//! [`super::tangential_load`].
 //! Bodies, modes of what is struck and the contacts' tangential flexibility take part.
 
 use super::surface_modes::{MovingSurfaces, SurfaceMode};
+use super::tangential_load::Tangential;
 use crate::contact::{Press, TangentialContact};
 
 /// Longest step over the inverse angular frequency of the sticking contact.
@@ -66,11 +67,8 @@ pub struct Slid {
     pub dissipated: [f64; 2],
     /// Impulses in N s along x on the bodies by forces across surfaces that turn.
     pub tilted: [f64; 2],
-    /// How far both contacts have moved along x over the struck body, m: the mean over the impulses across the surfaces; known where the
-    /// surfaces turn.
-    pub way: [f64; 2],
-    /// Times in s, and the forces on the struck body along the surface over those across it, by outer and inner body.
-    pub course: Vec<(f64, [f64; 2])>,
+    /// Times in s, and what happens along the surfaces then; the ways of the contacts are known where the surfaces turn.
+    pub course: Vec<(f64, Tangential)>,
     /// Largest velocity in m/s at which the forces along the surfaces move a contact across them.
     pub across: f64,
     /// Estimated error of the velocities along the surfaces, over the speed; 0 if it was not looked for.
@@ -83,13 +81,13 @@ impl Sliding<'_> {
     /// Moves the bodies while they are pressed together as `presses` has it at every `time` in s, in `finer` times as many steps as seem enough.
     /// With fewer not every sample counts. Shapes (samples), (contacts, samples).
     pub fn slide(mut self, time: &[f64], presses: &[Vec<Press>; 2], finer: f64) -> Slid {
-        let mut slid = Slid { course: vec![(0.0, [0.0; 2])], finer, ..Slid::default() };
+        let mut slid = Slid { course: vec![(0.0, Tangential::default())], finer, ..Slid::default() };
         let mut velocity = self.velocity;
         let mut surfaces = MovingSurfaces::new(self.modes);
         let mut earlier = self.forces();
-        // of the surfaces along x so far, m, and of the contacts on them
-        let (mut moved, mut way) = ([0.0; 2], [0.0; 2]);
-        let mut pressed = [0.0; 2];
+        // of the surfaces along x so far, m
+        let mut moved = [0.0; 2];
+        let mut now = Tangential::default();
         let last = time.len().saturating_sub(1);
         let apart = finer.recip().max(1.0) as usize;
         for start in (0..last).step_by(apart) {
@@ -117,12 +115,10 @@ impl Sliding<'_> {
                 for (i, contact) in self.contacts.iter_mut().enumerate() {
                     let surface = by_pressing[i] + by_friction[i] + yields[i];
                     if let Some(Tilt { arm, masses }) = self.tilt {
-                        let push = 0.5 * h * (across[i] + press[i].force);
-                        let impulse = push * (moved[i] + 0.5 * surface) / arm;
+                        let force = 0.5 * (across[i] + press[i].force);
+                        let impulse = h * force * (moved[i] + 0.5 * surface) / arm;
                         let centre = self.centres[i] + (slid.tilted[i] - slid.impulse[i]) / masses[i];
-                        way[i] += centre * h - surface;
-                        pressed[i] += push;
-                        slid.way[i] += push * way[i];
+                        now.ways[i] += (centre * h - surface) / arm;
                         slid.tilted[i] += impulse;
                         velocity[i] += impulse / masses[i];
                     }
@@ -136,12 +132,11 @@ impl Sliding<'_> {
                 slid.across = slid.across.max(surfaces.speed_across());
                 (0..2).for_each(|i| slid.impulse[i] += 0.5 * h * (before[i] + after[i]));
             }
-            let (forces, mut ratios) = (self.forces(), slid.course[slid.course.len() - 1].1);
+            let forces = self.forces();
             // between two contacts the ratio stays as it was
-            (0..2).filter(|i| to[*i].force > 0.0).for_each(|i| ratios[i] = forces[i] / to[i].force);
-            slid.course.push((time[end], ratios));
+            (0..2).filter(|i| to[*i].force > 0.0).for_each(|i| now.ratios[i] = forces[i] / to[i].force);
+            slid.course.push((time[end], now));
         }
-        (0..2).filter(|i| pressed[*i] > 0.0).for_each(|i| slid.way[i] /= pressed[i]);
         for (i, contact) in self.contacts.iter().enumerate() {
             slid.dissipated[i] = contact.as_ref().map_or(0.0, TangentialContact::dissipated);
         }

@@ -2,8 +2,8 @@
 
 use super::batch::{Block, OscillatorBatch, pushed};
 use super::collocation::Collocation;
-use super::friction_load::LoadTable;
 use super::system::dot;
+use super::tangential_load::LoadTable;
 use crate::numerics::duhamel::MOMENTS;
 use crate::numerics::stages::{STAGES, Stages, powers};
 use wide::f64x4;

@@ -7,8 +7,8 @@
 //! Contact 0 joins outer body and plate, contact 1 plate and inner body.
 
 use super::centre::LocalCentre;
-use super::friction_load::FrictionLoad;
 use super::moving_body::MovingBody;
+use super::tangential_load::TangentialLoad;
 use crate::actuator::Stack;
 use crate::actuator::circuit::{Account, Circuit};
 use crate::analytical::hertz::HertzImpact;
@@ -18,6 +18,7 @@ use crate::fluid::Indentation;
 use crate::material::Material;
 use crate::numerics::duhamel::{Feed, Oscillator};
 use crate::result::Drive;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Index of the outer body's first coordinate among the oscillators: the rigid motion, or a bender's first mode. Further
@@ -108,8 +109,8 @@ pub struct System {
     pub first_frequency: f64,
     /// Number of elastic modes of the plate.
     pub modes: usize,
-    /// What forces along the surfaces do to the motion across them, where that is known from a run before.
-    pub friction_load: Option<FrictionLoad>,
+    /// What happens along the surfaces and changes the motion across them, where that is known from a run before.
+    pub tangential_load: Option<TangentialLoad>,
 }
 
 impl System {
@@ -185,7 +186,7 @@ impl System {
             inner_speed: inner.speed,
             first_frequency: elastic.clone().fold(f64::INFINITY, f64::min) / (2.0 * std::f64::consts::PI),
             modes: elastic.count(),
-            friction_load: None,
+            tangential_load: None,
             oscillators: coordinates.iter().map(|c| c.oscillator).collect(),
         }
     }
@@ -259,15 +260,15 @@ impl System {
         Self { residual: (!residual.is_zero()).then_some(residual), ..self.clone() }
     }
 
-    /// The same with contacts that have moved by `way` m along x over a plate whose faces are `arm` m away from its middle: there its modes
-    /// have moved on by their slope (Kirchhoff).
-    #[must_use]
-    pub fn touched_at(&self, way: [f64; 2], arm: f64) -> Self {
+    /// As the contacts see it at `time` s, when they have moved over the plate.
+    pub fn touched_at(&self, time: f64) -> Cow<'_, Self> {
+        let Some(load) = &self.tangential_load else { return Cow::Borrowed(self) };
         let mut system = self.clone();
-        for (k, along) in self.elastic().zip(&self.along) {
-            (0..2).for_each(|i| system.approach[i][k] -= way[i] * along[i] / arm);
+        let ways = load.at(time).ways;
+        for (k, along) in load.along.iter().enumerate() {
+            (0..2).for_each(|i| system.approach[i][k] -= ways[i] * along[i]);
         }
-        system
+        Cow::Owned(system)
     }
 
     /// Rates of both contact forces in N/s with the patches `local` in m and the modal approaches' rates `rate` in m/s.

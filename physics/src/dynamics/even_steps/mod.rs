@@ -15,9 +15,9 @@ use self::oscillators::EvenOscillators;
 use super::contact_balance::ContactBalance;
 use super::driver::{self, Stepper};
 use super::free_flight;
-use super::friction_load::GivenLoad;
 use super::integration::{Closing, FluidAccount, Integration, NEGLIGIBLE, Options};
 use super::system::System;
+use super::tangential_load::GivenLoad;
 use crate::analytical::hertz::HertzImpact;
 use crate::error::{Error, Result};
 
@@ -37,7 +37,7 @@ pub fn serve(system: &System, options: &Options) -> bool {
     options.sample_interval.is_none()
         && !options.heat
         && !system.outer_returns()
-        && system.friction_load.is_none()
+        && system.tangential_load.is_none()
 }
 
 /// Number of oscillators of the `system` that move by themselves in steps of `h` s.

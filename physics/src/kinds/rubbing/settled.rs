@@ -1,16 +1,13 @@
 //! Friction that bends or turns what is struck, and contacts that move over it: the motion across the surfaces and that along them, in turn
 //! until both settle.
-//!
-//! A body that strikes a plate obliquely moves over it while they touch. Off-centre it comes to where the modes move more or less; of its way
-//! counts the mean over the impulse, which is right to the first order where the plate answers slowly against the contact.
 
 use super::{Rubbing, StruckSurface};
 use crate::dynamics::error_control::differences;
-use crate::dynamics::friction_load::FrictionLoad;
 use crate::dynamics::integration::{Integration, Options, Settled};
-use crate::dynamics::sliding::{Slid, Tilt};
+use crate::dynamics::sliding::Slid;
 use crate::dynamics::surface_modes::SurfaceMode;
 use crate::dynamics::system::System;
+use crate::dynamics::tangential_load::TangentialLoad;
 use crate::error::Result;
 use std::borrow::Cow;
 
@@ -46,14 +43,16 @@ impl Rubbing {
         // what happens along the surfaces changes little: steps that are right without it are right with it
         let converged = smooth.converged.or(options.converged);
         let (once, error_estimate) = (Options { converged, ..with_forces }, smooth.error_estimate);
-        let along = rubs.then(|| participations(system, modes));
+        let along = participations(system, modes);
         let mut settled = Settled { error: 0.0, slid };
         let (mut found, mut last) = (smooth, Cow::Borrowed(system));
         let is_notable = rubs && settled.slid.across > NEGLIGIBLE * system.speed
-            || self.change(system, settled.slid.way) > NEGLIGIBLE;
+            || self.moves_on(system) && settled.slid.change(system) > NEGLIGIBLE;
         let mut change_before = f64::INFINITY;
         for _ in 0..if is_notable { MOST_ROUNDS } else { 0 } {
-            let changed = self.changed(system, along.as_deref(), &settled.slid);
+            let load =
+                TangentialLoad { course: std::mem::take(&mut settled.slid.course), along: along.clone() };
+            let changed = System { tangential_load: Some(load), ..system.clone() };
             let next = run(&changed, &once)?;
             let change = change(system, [&found, &next]);
             if change >= change_before {
@@ -76,26 +75,18 @@ impl Rubbing {
         Ok(Integration { friction: Some(settled), converged, error_estimate, ..found })
     }
 
-    /// The `system` with what its motion along the surfaces does, which was `slid` in the run before: the forces along them move modes with the
-    /// participations `along` if there is friction, and the contacts move over the plate.
-    fn changed(&self, system: &System, along: Option<&[[f64; 2]]>, slid: &Slid) -> System {
-        let mut changed =
-            self.tilt.map_or_else(|| system.clone(), |tilt| system.touched_at(slid.way, tilt.arm));
-        changed.friction_load =
-            along.map(|along| FrictionLoad { course: slid.course.clone(), along: along.to_vec() });
-        changed
-    }
-
     /// Whether the outer body moves over a plate where its modes change along x.
     fn moves_on(&self, system: &System) -> bool {
         self.tilt.is_some() && self.outer.angle != 0.0 && system.along.iter().any(|along| along[0] != 0.0)
     }
+}
 
-    /// Relative change of what the first mode does at the outer contact of `system` when that has moved by its `way` in m.
-    fn change(&self, system: &System, way: [f64; 2]) -> f64 {
+impl Slid {
+    /// Largest relative change of what the first mode of `system` does at the outer contact, as that moves.
+    fn change(&self, system: &System) -> f64 {
+        let farthest = self.course.iter().map(|(_, at)| at.ways[0].abs()).fold(0.0, f64::max);
         let first = system.elastic().zip(&system.along).next();
-        let of = |tilt: Tilt| first.map(|(k, along)| way[0] * along[0] / (tilt.arm * system.approach[0][k]));
-        self.tilt.and_then(of).map_or(0.0, f64::abs)
+        first.map_or(0.0, |(k, along)| farthest * (along[0] / system.approach[0][k]).abs())
     }
 }
 
