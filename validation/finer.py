@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 from models import PROGRAM
 from solve import each_on_a_core, limits, write_whole
-from table import Row, read, short, write
+from table import Row, known, read, write
 
 QUANTILES = (0.5, 0.9, 0.95, 1.0)
 DOUBTFUL = 0.6
@@ -62,9 +62,9 @@ def ratios(before: dict[str, Any], after: dict[str, Any]) -> list[float]:
 
 def is_doubtful(row: Row) -> bool:
     """Whether a scene is to be solved on finer meshes."""
-    known = [of for of in row["values"].values() if of[1] and of[-1] is not None]
+    decided = [of for of in row["values"].values() if of[1] and of[-1] is not None]
     differs = any(
-        abs(of[-1] - of[0]) > max(DOUBTFUL * of[1], NOTABLE * abs(of[-1])) for of in known
+        abs(of[-1] - of[0]) > max(DOUBTFUL * of[1], NOTABLE * abs(of[-1])) for of in decided
     )
     return differs and "resolution" not in row
 
@@ -72,7 +72,7 @@ def is_doubtful(row: Row) -> bool:
 def with_finer(row: Row, after: dict[str, list[float]]) -> Row:
     """A line of the table with the reference's values on finer meshes."""
     values = {
-        name: [short(value) for value in after[name]] + of[2:] if name in after else of
+        name: known(*after[name]) + of[2:] if name in after else of
         for name, of in row["values"].items()
     }
     return row | {"values": values, "resolution": "paper"}
@@ -101,7 +101,7 @@ def solve_missing(names: list[str], scenes: Path, rows: Path, program: Path) -> 
 
 def line(row: Row, after: dict[str, list[float]]) -> Row:
     """A line of `finer.jsonl`."""
-    values = {name: [short(value) for value in of] for name, of in after.items()}
+    values = {name: known(*of) for name, of in after.items()}
     return {"scene": row["scene"], "hash": row["hash"], "values": values}
 
 

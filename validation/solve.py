@@ -29,7 +29,7 @@ from threading import Thread
 
 import numpy as np
 from models import PROGRAM, reason, results
-from table import Row, read, short, with_models
+from table import HASH, Row, known, read, with_models
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from fem_reference.common.uncertainty import bands
@@ -60,11 +60,11 @@ def of_reference(document: Row) -> Row:
     reference = scene["reference"]
     found = limits(reference["convergence"])
     return {
-        "hash": reference["scene_hash"],
+        "hash": reference["scene_hash"][:HASH],
         "dofs": reference["mesh"]["dofs"],
         "unsound": [check["check"] for check in scene["integrity"] if check["verdict"] == "fail"],
         "contacts": [reference[name] for name in CONTACTS if name in reference],
-        "values": {name: [short(value) for value in of] for name, of in found.items()},
+        "values": {name: known(*of) for name, of in found.items()},
     }
 
 

@@ -19,7 +19,10 @@ from typing import Any
 MODELS = ("A", "B", "C")
 LARGEST = 1_000_000
 """Bytes of the table, which comes with the program."""
-DIGITS = 7
+DIGITS = 6
+"""Of values; of half widths and of scenes' hashes it is fewer that tell."""
+BAND_DIGITS = 3
+HASH = 16
 
 Row = dict[str, Any]
 
@@ -29,12 +32,17 @@ def short(value: float | None) -> float | None:
     return None if value is None else float(f"{value:.{DIGITS}g}")
 
 
+def known(limit: float, band: float) -> list[float | None]:
+    """What a line has of a reference's quantity: the limit and the half width of its band."""
+    return [short(limit), float(f"{band:.{BAND_DIGITS}g}")]
+
+
 def with_models(row: Row, results: Row) -> Row:
     """A line of the table with these results of the models."""
     similarity = results["C"].get("similarity") or {"numbers": {}, "results": {}}
     values = {
-        name: known[:2] + [short(results.get(model, {}).get(name)) for model in MODELS]
-        for name, known in row["values"].items()
+        name: of[:2] + [short(results.get(model, {}).get(name)) for model in MODELS]
+        for name, of in row["values"].items()
     }
     numbers = {
         part: {name: short(value) for name, value in similarity[part].items()}

@@ -13,7 +13,7 @@ const FINER: &str = include_str!("../../validation/finer.jsonl");
 pub struct SolvedScene {
     /// Name of the scene.
     pub scene: String,
-    /// Hash of its physical content.
+    /// First digits of the hash of its physical content.
     pub hash: String,
     /// Group of similar scenes that it was drawn in.
     pub stratum: String,
@@ -70,7 +70,7 @@ impl SolvedScene {
 pub struct FinerScene {
     /// Name of the scene.
     pub scene: String,
-    /// Hash of its physical content.
+    /// First digits of the hash of its physical content.
     pub hash: String,
     /// The reference's value in the limit of fine meshes and the half width of its 95 % band, by quantity, SI.
     pub values: BTreeMap<String, [Option<f64>; 2]>,

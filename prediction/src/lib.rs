@@ -147,8 +147,10 @@ impl Similar {
     pub fn of(scene: &Scene) -> Result<Self, String> {
         let kind = kinds::of(scene)?;
         let (stratum, hash) = (kind.stratum(scene)?, scene.hash());
-        let scenes: Vec<&SolvedScene> =
-            solved().iter().filter(|other| other.stratum == stratum && other.hash != hash).collect();
+        let scenes: Vec<&SolvedScene> = solved()
+            .iter()
+            .filter(|other| other.stratum == stratum && !hash.starts_with(&other.hash))
+            .collect();
         if scenes.len() < FEWEST {
             return Err(format!(
                 "the validation base has {} scenes of the group `{stratum}`; {FEWEST} are needed",
