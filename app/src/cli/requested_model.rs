@@ -99,7 +99,7 @@ pub struct ModelRequest {
     /// (the simplest one that is predicted to be within the tolerance) [default: the scene's, or C]
     #[arg(long)]
     pub model: Option<RequestedModel>,
-    /// Number of modes [default: the scene's, or 16 for B and as many as needed for C]
+    /// Number of modes [default: the scene's, or 16 for B, 32 for C of a seal seat, and as many as needed for C of others]
     #[arg(long, value_name = "N")]
     pub modes: Option<usize>,
     /// Relative error of the time integration [default: 1e-7; seal seat 1e-3]. With --model auto: relative error of

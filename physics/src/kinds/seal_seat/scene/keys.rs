@@ -96,7 +96,7 @@ static INTENDED: [Field; 1] = [required(
 
 static REDUCED: [Field; 2] = [
     optional("model", Kind::Choice(&[choice("C")]), "Model to run: this kind has model C only"),
-    optional("modes", Kind::Count(1, 1024), "Number of modes of the seat"),
+    optional("modes", Kind::Count(1, 1024), "Number of modes of the seat; absent = 32"),
 ];
 
 /// Smallest and largest number of elements across the ring's radius.
