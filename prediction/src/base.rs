@@ -144,4 +144,16 @@ mod tests {
         let is_known = |finer: &FinerScene| solved().iter().any(|scene| scene.hash == finer.hash);
         assert!(finer().iter().all(is_known));
     }
+
+    /// Scenes are compared number by number.
+    #[test]
+    fn scenes_of_a_group_have_the_same_numbers() {
+        // model C of some has no result
+        let known = || solved().iter().filter(|scene| !scene.numbers.is_empty());
+        for scene in known() {
+            let first = known().find(|other| other.stratum == scene.stratum).expect("a scene");
+            assert!(scene.results.keys().eq(first.results.keys()), "{}", scene.scene);
+            assert!(scene.numbers.keys().eq(first.numbers.keys()), "{}", scene.scene);
+        }
+    }
 }

@@ -50,7 +50,7 @@ pub fn run(context: &Context, arguments: &Arguments) -> Result<ExitStatus> {
     })?;
     let prediction = predicted(context, &scene, &arguments.request, &outcome.summary);
     if let Err(reason) = &prediction {
-        context.detail(format_args!("no 95 % intervals: {reason}"));
+        context.note(format_args!("no 95 % intervals: {reason}"));
     }
     if let Some(file) = &arguments.page {
         write_file(file, report::model_page(&scene, &outcome, &prediction).as_bytes())?;
