@@ -113,8 +113,8 @@ impl<'a> StepSolver<'a> {
     }
 
     /// Solves a step of the length of `table` that follows on `before`, from the state `now` into `next`; `None` if
-    /// the sweeps do not settle within `force_error` or the contact has no equilibrium. Along the surfaces happens
-    /// what `load` has.
+    /// the sweeps do not settle within `force_error` or the contact has no equilibrium. `load` has what happens
+    /// along the surfaces.
     pub fn solve(
         &mut self,
         table: &StepTable,

@@ -341,13 +341,11 @@ impl<'a> DryStepper<'a> {
         let forces = || trial.stages().map(|stages| collocation.derivatives(&stages, h));
         let local = |approach: [f64; 2]| [0, 1].map(|i| approach[i] - system.gap[i]);
         let along = || trial.along.map(|stages| collocation.derivatives(&stages, h));
+        let shift =
+            system.tangential_load.as_ref().map(|_| trial.shift.map(|shift| collocation.through(&shift)));
         // with its derivatives by the place
-        let shift = trial.shift.map(|shift| collocation.through(&shift));
         let add_shift = |motion: &mut [[f64; 2]], place: f64| {
-            if system.tangential_load.is_none() {
-                return;
-            }
-            for (i, shift) in shift.iter().enumerate() {
+            for (i, shift) in shift.iter().flatten().enumerate() {
                 let slope = derivative(shift);
                 let values =
                     [horner(shift, place), horner(&slope, place), horner(&derivative(&slope), place)];
