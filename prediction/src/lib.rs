@@ -28,6 +28,9 @@ use std::collections::BTreeMap;
 pub const LEVEL: f64 = 0.95;
 /// Fewest scenes that intervals come from.
 pub const FEWEST: usize = 30;
+/// Scenes whose distance at an end of the base's range is that by which a scene may lie beyond it: random numbers never reach their bounds,
+/// where a designer's often are.
+const NEIGHBOURS: usize = 2;
 /// Efficiency, and inner force over the outer one, below which a part of an impact is negligible.
 const MINOR: f64 = 0.05;
 /// End of the names of velocities.
@@ -193,16 +196,21 @@ impl Similar {
         }
     }
 
-    /// Refuses a number that lies beyond those of all scenes.
+    /// Refuses a number that lies beyond those of all scenes, by more than the next [`NEIGHBOURS`] at that end lie apart.
     fn require_within(
         &self,
         name: &str,
         own: f64,
         of: impl Fn(&SolvedScene) -> Option<f64>,
     ) -> Result<(), String> {
-        let known = self.scenes.iter().filter_map(|other| of(other));
-        let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (v.min(l), v.max(h)));
-        match (low..=high).contains(&own) {
+        let mut known: Vec<f64> = self.scenes.iter().filter_map(|other| of(other)).collect();
+        known.sort_by(f64::total_cmp);
+        let ends = known.first().zip(known.last());
+        let near = known.get(NEIGHBOURS).zip(known.iter().rev().nth(NEIGHBOURS));
+        let (Some((low, high)), Some((lower, upper))) = (ends, near) else {
+            return Err(format!("too few scenes of the validation base have a {name}"));
+        };
+        match (2.0 * low - lower..=2.0 * high - upper).contains(&own) {
             true => Ok(()),
             false => Err(format!(
                 "the scene lies beyond the validation base: {name} is {own:.3}, there it is {low:.3} to {high:.3}"
@@ -268,4 +276,20 @@ pub fn scale(quantity: &str, value: impl Fn(&str) -> Option<f64>, speed: f64) ->
         _ if quantity.ends_with(ANGLE) => 1.0,
         _ => own,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_lies_as_far_beyond_the_base_as_the_next_scenes_are_apart() {
+        let dry = || solved().iter().filter(|scene| scene.stratum == "dry");
+        let found = Similar { stratum: "dry", scenes: dry().collect() };
+        let mut speeds: Vec<f64> = dry().map(|scene| scene.speed).collect();
+        speeds.sort_by(f64::total_cmp);
+        let within = |speed: f64| found.require_within("speed", speed, |scene| Some(scene.speed)).is_ok();
+        let (low, apart) = (speeds[0], speeds[NEIGHBOURS] - speeds[0]);
+        assert!(within(low) && within(low - 0.9 * apart) && !within(low - 1.1 * apart));
+    }
 }

@@ -19,9 +19,11 @@ pub(super) fn predicted(
     let default = ModelRequest { model: Some(RequestedModel::Named(Model::C)), ..ModelRequest::default() };
     let is_default = request.modes.or(scene.reduced.modes).is_none() && request.tolerance.is_none();
     let is_continuum = is_default && summary.choice.is_none() && summary.model == Some(Model::C.to_string());
+    // what it says of its mesh is said once
+    let quiet = Context { quiet: true, ..context.clone() };
     prediction::predict_of_any(scene, (summary, is_continuum), |scene| {
         let bodies = SharedBodies::default();
-        Ok(kinds::of(scene).reduced(context, scene, &default, &bodies, false)?.summary)
+        Ok(kinds::of(scene).reduced(&quiet, scene, &default, &bodies, false)?.summary)
     })
 }
 

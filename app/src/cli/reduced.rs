@@ -104,8 +104,8 @@ fn predicted_lines(intervals: &BTreeMap<&'static str, Interval>, summary: &Summa
 /// The summary as lines of name, value and unit; of the quantities those that the scene has.
 pub fn table(summary: &Summary, has: impl Fn(&str) -> bool) -> String {
     let who = match &summary.model {
-        Some(model) => format!("model {}", model_name(model, summary.modes)),
-        None => "reference".to_owned(),
+        Some(model) if summary.modes.is_some() => format!("model {}", model_name(model, summary.modes)),
+        _ => "reference".to_owned(),
     };
     let mut lines = vec![format!("{} ({who})", summary.scene)];
     for &Quantity { name, unit, value, .. } in summary.quantities.iter().filter(|quantity| has(quantity.name))
