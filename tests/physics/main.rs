@@ -11,6 +11,7 @@ mod continuum_plate_frequencies;
 mod continuum_sphere;
 mod even_steps;
 mod friction;
+mod friction_off_centre;
 mod general_impact;
 mod hertz_goldsmith;
 mod integrator_runge_kutta;
