@@ -24,8 +24,8 @@ from ..common.arrays import Floats, Ints
 from ..common.errors import SolverError
 from ..common.mesher import start_gmsh
 from ..solid.collapse import collapse_short_edges
-from ..solid.mesh import TetMesh, check_elements, tetrahedra
-from ..solid.meshing import generate
+from ..solid.mesh import MINIMUM_QUALITY, TetMesh, check_elements, qualities, tetrahedra
+from ..solid.meshing import TRIES, generate
 from .scene import Ring, SeatScene
 
 SLOPE = 0.6
@@ -38,6 +38,8 @@ THROUGH_MEMBRANE = 1.0
 """Least number of elements through the membrane; quadratic ones bend well with one."""
 THROUGH_ISLAND = 2.5
 """Least number of elements over the island's height."""
+FINER = 1.01
+"""More elements in every direction, where a mesh has a degenerate one."""
 CAD_UNITS = (1.0, 1e-3)
 """Units of length of the CAD model, m, tried in this order.
 
@@ -249,11 +251,15 @@ def corner_mesh(scene: SeatScene, factor: float) -> tuple[Floats, Ints]:
 def seat_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
     """The half seat with ``factor`` times the elements requested, in every direction.
 
+    Where an element is degenerate, slightly more elements are tried.
+
     Raises:
         SolverError: gmsh failed, an element is inverted or degenerate, or the ring is no edge.
     """
-    points, corners = corner_mesh(scene, factor)
-    points, corners = collapse_short_edges(points, corners)
+    for attempt in range(TRIES):
+        points, corners = collapse_short_edges(*corner_mesh(scene, factor * FINER**attempt))
+        if qualities(points, corners).min() > MINIMUM_QUALITY:
+            break
     length = scene.seat.membrane_radius
     # What lies on the plane of symmetry and on the underside up to rounding, lies there exactly.
     for axis in (1, 2):

@@ -122,6 +122,28 @@ def test_an_edge_that_is_far_too_short_is_no_edge_of_the_mesh() -> None:
     assert volume == pytest.approx(TetMesh("seat", points, corners).volume(), rel=1e-6)
 
 
+def test_a_seat_with_a_degenerate_element_is_meshed_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    factors: list[float] = []
+    made = meshing.corner_mesh
+
+    def flat_at_first(design: SeatScene, factor: float) -> tuple[Floats, Ints]:
+        factors.append(factor)
+        points, corners = made(design, factor)
+        if len(factors) == 1:
+            base = corners[0, :3]
+            above = points[base].mean(axis=0) + 1e-3 * (points[corners[0, 3]] - points[base[0]])
+            points = np.vstack([points, above])
+            corners = np.vstack([corners, [*base, len(points) - 1]])
+        return points, corners
+
+    monkeypatch.setattr(meshing, "corner_mesh", flat_at_first)
+    mesh = seat_mesh(scene(reference__element_order=1), 0.6)
+    assert factors == [0.6, pytest.approx(0.606)]
+    assert qualities(mesh.points, mesh.corners).min() > 0.05
+
+
 def test_tools_that_overlap_leave_no_pieces() -> None:
     # OpenCASCADE leaves four pieces of the cones where the notch crosses them.
     design = scene(True, seat__tilt=17.5 * DEGREE, reference__element_order=1)
