@@ -17,11 +17,11 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from draw import write
+import draw
 from models import PROGRAM, results
 from points import STRATA
 from solve import each_on_a_core, solve, write_whole
-from table import Row, known, read, short
+from table import Row, known, read, short, write
 
 COUNTS = {
     "dry": 3,
@@ -40,7 +40,7 @@ TRIED = 8
 
 def predicted(group: str, folder: Path, program: Path) -> Iterator[Row]:
     """The next scenes of a group that have a prediction."""
-    write(group, STRATA[group] + TRIED, folder)
+    draw.write(group, STRATA[group] + TRIED, folder)
     for k in range(STRATA[group], STRATA[group] + TRIED):
         name = f"{group}-{k:03}"
         intervals = results(folder / f"{name}.toml", program)["C"].get("prediction")
@@ -59,12 +59,6 @@ def within(line: Row) -> dict[str, bool]:
     return found
 
 
-def save(table: Path, lines: list[Row]) -> None:
-    """Write the lines."""
-    text = "".join(json.dumps(line, separators=(",", ":")) + "\n" for line in lines)
-    table.write_text(text, encoding="utf-8")
-
-
 def main() -> None:
     """Predict, or solve what is predicted."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -79,7 +73,7 @@ def main() -> None:
     for group in sorted(COUNTS.keys() - groups):
         next_ones = predicted(group, given.folder, given.program)
         lines += itertools.islice(next_ones, COUNTS[group])
-    save(given.table, lines)
+    write(given.table, lines)
     if len(lines) > before:
         print(f"{len(lines)} scenes are predicted; run again to solve them", file=sys.stderr)
         return
@@ -103,7 +97,7 @@ def main() -> None:
             held = within(line)
             missed = ", ".join(name for name, holds in held.items() if not holds)
             print(f"{line['scene']}: {sum(held.values())} of {len(held)} within; {missed or 'all'}")
-    save(given.table, lines)
+    write(given.table, lines)
 
 
 if __name__ == "__main__":

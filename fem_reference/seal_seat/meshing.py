@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import gmsh
@@ -24,7 +25,14 @@ from ..common.arrays import Floats, Ints
 from ..common.errors import SolverError
 from ..common.mesher import start_gmsh
 from ..solid.collapse import collapse_short_edges
-from ..solid.mesh import MINIMUM_QUALITY, TetMesh, check_elements, qualities, tetrahedra
+from ..solid.mesh import (
+    MINIMUM_QUALITY,
+    TetMesh,
+    check_elements,
+    edge_lengths,
+    qualities,
+    tetrahedra,
+)
 from ..solid.meshing import TRIES, generate
 from .scene import Ring, SeatScene
 
@@ -38,8 +46,6 @@ THROUGH_MEMBRANE = 1.0
 """Least number of elements through the membrane; quadratic ones bend well with one."""
 THROUGH_ISLAND = 2.5
 """Least number of elements over the island's height."""
-FINER = 1.01
-"""More elements in every direction, where a mesh has a degenerate one."""
 CAD_UNITS = (1.0, 1e-3)
 """Units of length of the CAD model, m, tried in this order.
 
@@ -61,8 +67,31 @@ def _ring_distance(ring: Ring) -> str:
 
 
 @dataclass(frozen=True)
+class ShortEdge:
+    """A place at which an edge of the geometry is too short for the elements there."""
+
+    centre: tuple[float, float, float]
+    """m"""
+    length: float
+    """m"""
+
+    def over(self, unit: float) -> ShortEdge:
+        """The same in multiples of ``unit`` (m)."""
+        x, y, z = self.centre
+        return ShortEdge((x / unit, y / unit, z / unit), self.length / unit)
+
+    def expression(self, slope: float) -> str:
+        """Size that grows with the distance, for gmsh's MathEval."""
+        x, y, z = (f"({axis}-({at!r}))" for axis, at in zip("xyz", self.centre, strict=True))
+        return f"{self.length!r}+{slope!r}*Sqrt({x}*{x}+{y}*{y}+{z}*{z})"
+
+
+@dataclass(frozen=True)
 class SeatSize:
-    """Element size min(largest, ring + slope * d_ring, tip + slope * max(0, d_tip - zone)), m."""
+    """Element size min(largest, ring + slope * d_ring, tip + slope * max(0, d_tip - zone)), m.
+
+    At short edges elements are smaller, too.
+    """
 
     ring: Ring
     at_ring: float
@@ -77,6 +106,7 @@ class SeatSize:
     """Largest size in the membrane, m."""
     membrane_top: float
     """z, m."""
+    short_edges: tuple[ShortEdge, ...]
 
     def expression(self) -> str:
         """For gmsh's MathEval."""
@@ -85,12 +115,14 @@ class SeatSize:
             away = f"Sqrt((x-({tip!r}))*(x-({tip!r}))+y*y+z*z)"
             near = f"{self.at_tips!r}+{self.slope!r}*Max(0,{away}-{self.tip_zone!r})"
             size = f"Min({size},{near})"
+        for edge in self.short_edges:
+            size = f"Min({size},{edge.expression(self.slope)})"
         # From the membrane's size to that of the island over a membrane's thickness or so.
         bulk = f"({self.membrane!r}+{self.slope!r}*Max(0,z-{self.membrane_top!r}))"
         return f"Min(Min({self.largest!r},{bulk}),{size})"
 
 
-def seat_size(scene: SeatScene, factor: float) -> SeatSize:
+def seat_size(scene: SeatScene, factor: float, short_edges: Iterable[ShortEdge]) -> SeatSize:
     """Element sizes for ``factor`` times the elements requested, in every direction."""
     seat, ring = scene.seat, scene.ring()
     at_ring = ring.radius / scene.elements_per_ring_radius / factor
@@ -107,6 +139,7 @@ def seat_size(scene: SeatScene, factor: float) -> SeatSize:
         largest=seat.island_height / (THROUGH_ISLAND * through) / factor,
         membrane=membrane / factor,
         membrane_top=seat.membrane_thickness,
+        short_edges=tuple(short_edges),
     )
 
 
@@ -228,38 +261,56 @@ def sphere_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
     return mesh
 
 
-def _corner_mesh_in(scene: SeatScene, factor: float, unit: float) -> tuple[Floats, Ints]:
+def _corner_mesh_in(
+    scene: SeatScene, factor: float, short_edges: Sequence[ShortEdge], unit: float
+) -> tuple[Floats, Ints]:
     """Points (n, 3), m, and elements (m, 4) of the half seat, its CAD model built in ``unit``.
 
     Raises:
         SolverError: gmsh failed.
     """
     cad = scene.lengths_over(unit)
-    points, corners = generate("seat", lambda: build(cad), seat_size(cad, factor))
+    size = seat_size(cad, factor, (edge.over(unit) for edge in short_edges))
+    points, corners = generate("seat", lambda: build(cad), size)
     return points * unit, corners
 
 
-def corner_mesh(scene: SeatScene, factor: float) -> tuple[Floats, Ints]:
+def corner_mesh(
+    scene: SeatScene, factor: float, short_edges: Sequence[ShortEdge] = ()
+) -> tuple[Floats, Ints]:
     """The same in the first unit with which gmsh succeeds."""
     *others, last = CAD_UNITS
     for unit in others:
         with contextlib.suppress(SolverError):
-            return _corner_mesh_in(scene, factor, unit)
-    return _corner_mesh_in(scene, factor, last)
+            return _corner_mesh_in(scene, factor, short_edges, unit)
+    return _corner_mesh_in(scene, factor, short_edges, last)
+
+
+def _short_edges(points: Floats, corners: Ints) -> list[ShortEdge]:
+    """The shortest edge of each degenerate element, at its centre."""
+    degenerate = corners[~(qualities(points, corners) > MINIMUM_QUALITY)]
+    centres, lengths = points[degenerate].mean(axis=1), edge_lengths(points, degenerate)
+    return [
+        ShortEdge((float(x), float(y), float(z)), float(length))
+        for (x, y, z), length in zip(centres, lengths.min(axis=1), strict=True)
+    ]
 
 
 def seat_mesh(scene: SeatScene, factor: float = 1.0) -> TetMesh:
     """The half seat with ``factor`` times the elements requested, in every direction.
 
-    Where an element is degenerate, slightly more elements are tried.
+    Where elements are degenerate, smaller ones are tried around them.
 
     Raises:
         SolverError: gmsh failed, an element is inverted or degenerate, or the ring is no edge.
     """
-    for attempt in range(TRIES):
-        points, corners = collapse_short_edges(*corner_mesh(scene, factor * FINER**attempt))
-        if qualities(points, corners).min() > MINIMUM_QUALITY:
+    short_edges: list[ShortEdge] = []
+    for _ in range(TRIES):
+        points, corners = collapse_short_edges(*corner_mesh(scene, factor, short_edges))
+        found = _short_edges(points, corners)
+        if not found:
             break
+        short_edges += found
     length = scene.seat.membrane_radius
     # What lies on the plane of symmetry and on the underside up to rounding, lies there exactly.
     for axis in (1, 2):
