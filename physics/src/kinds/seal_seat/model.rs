@@ -22,8 +22,8 @@ use crate::result::{CUT, History, Losses, Outcome, Point, Summary, Table};
 use crate::scene::{Model, Scene};
 use std::sync::Arc;
 
-/// Modes where neither scene nor caller names a number. With 16 the sphere's force peak was wrong by up to a fifth in random seats, where the
-/// estimated error was 2 % (seat-009 of the validation base); with 32 it is within 1 % of that with 64.
+/// Modes where neither scene nor caller names a number. With 16 the sphere's force peak was wrong by up to a fifth in random seats
+/// (seat-009 of the validation base); with 32 it is within 1 % of that with 64.
 pub const DEFAULT_MODES: usize = 32;
 /// Relative error of the sphere's velocity from the time integration when the caller names none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-3;
@@ -45,8 +45,8 @@ const WIDENINGS: u32 = 8;
 pub struct SeatModel {
     scene: Scene,
     system: System,
-    /// With half the modes, for [`truncation`].
-    half: System,
+    /// With another number of modes, and the share of its difference that is the truncation error.
+    compared: (System, f64),
     end_time: Option<f64>,
     first_step: f64,
     /// Velocity of the sphere in m/s at the end of a run with the first step; that run found the contact zones.
@@ -124,7 +124,7 @@ impl SeatModel {
             return Err(Error::Usage("--modes 0: at least one mode is needed".into()));
         }
         for _ in 0..WIDENINGS {
-            let seat = build(&zones, modes)?;
+            let seat = build(&zones, modes.max(DEFAULT_MODES))?;
             let built = Self::with(scene, setup, mesh, &seat, modes)?;
             let predictor = built.integrate(built.first_step, DEFAULT_TOLERANCE, false)?;
             let wider = zones.widened(predictor.tally.reach).map_or(zones, |wider| wider.at_most(setup));
@@ -142,6 +142,7 @@ impl SeatModel {
 
     fn with(scene: &Scene, setup: &SealSeat, mesh: &SeatMesh, seat: &SeatBody, modes: usize) -> Result<Self> {
         let system = System::new(setup, &seat.body, &seat.candidates, modes)?;
+        let (others, share) = truncation::compared(modes, seat.body.omega.len());
         let highest = system.omega.iter().fold(0.0f64, |a, b| a.max(*b));
         let period = 2.0 * std::f64::consts::PI / (highest * FIRST_STEPS.0);
         Ok(Self {
@@ -150,7 +151,7 @@ impl SeatModel {
             end_time: scene.run.end_time,
             // until the run that finds the contact zones has been made
             predictor: [f64::NAN; 2],
-            half: System::new(setup, &seat.body, &seat.candidates, modes / 2)?,
+            compared: (System::new(setup, &seat.body, &seat.candidates, others)?, share),
             system,
             warnings: doubts::of_model(setup, mesh),
             setup_seconds: 0.0,
@@ -275,7 +276,8 @@ impl SeatModel {
         let mut warnings = self.warnings.clone();
         warnings.extend(doubts::of_contacts(&self.system, result));
         let step = result.time / result.tally.steps as f64;
-        let error = truncation::estimate(result, &self.integrate_of(&self.half, step, tolerance, false)?);
+        let (other, share) = &self.compared;
+        let error = share * truncation::difference(result, &self.integrate_of(other, step, tolerance, false)?);
         warnings.extend(truncation::warning(error, self.system.omega.len()));
         warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if result.stop == StopReason::Cut {
