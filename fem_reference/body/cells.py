@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..solid.mesh import EDGES, FACES
+
 HEX_EDGES = (
     (0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7),
 )  # fmt: skip
@@ -14,8 +16,6 @@ WEDGE_TRIANGLES = ((0, 2, 1), (3, 4, 5))
 PYRAMID_EDGES = ((0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4))
 PYRAMID_QUADS = ((0, 3, 2, 1),)
 PYRAMID_TRIANGLES = ((0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4))
-TETRA_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
-TETRA_TRIANGLES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,8 @@ class Cell:
 
 _HEX = tuple(range(8))
 SOLIDS = {
-    "tetra": Cell(4, TETRA_TRIANGLES),
-    "tetra10": Cell(4, TETRA_TRIANGLES, TETRA_EDGES),
+    "tetra": Cell(4, FACES),
+    "tetra10": Cell(4, FACES, EDGES),
     "hexahedron": Cell(8, HEX_FACES),
     "hexahedron20": Cell(8, HEX_FACES, HEX_EDGES),
     "hexahedron27": Cell(8, HEX_FACES, (*HEX_EDGES, *HEX_FACES, _HEX)),

@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..common.arrays import Floats, Ints
-from .cells import SOLIDS, TETRA_EDGES, Cell
+from ..solid.mesh import EDGES
+from .cells import SOLIDS, Cell
 
 
 @dataclass
@@ -130,7 +131,7 @@ def _triangles(face: Ints) -> Iterator[tuple[Ints, Ints]]:
 
 def _with_midsides(edges: _Edges, tets: Ints) -> Ints:
     """Tetrahedra (m, 10); an edge without a node gets one in its middle."""
-    ends = np.sort(np.stack([tets[:, list(pair)] for pair in TETRA_EDGES], axis=1), axis=2)
+    ends = np.sort(np.stack([tets[:, list(pair)] for pair in EDGES], axis=1), axis=2)
     size = edges.points.shape[0] + 1
     wanted, inverse = np.unique(ends[..., 0] * size + ends[..., 1], return_inverse=True)
     node = np.full(wanted.size, -1, dtype=np.int64)
@@ -143,4 +144,4 @@ def _with_midsides(edges: _Edges, tets: Ints) -> Ints:
     missing = np.flatnonzero(node < 0)
     a, b = wanted[missing] // size, wanted[missing] % size
     node[missing] = edges.new(0.5 * (edges.points[a] + edges.points[b]))
-    return np.hstack([tets, node[inverse].reshape(-1, len(TETRA_EDGES))])
+    return np.hstack([tets, node[inverse].reshape(-1, len(EDGES))])

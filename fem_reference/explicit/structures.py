@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 MAX_INTERVALS = 256
-INT32 = ctypes.POINTER(ctypes.c_int32)
 INT64 = ctypes.POINTER(ctypes.c_int64)
 DOUBLE = ctypes.POINTER(ctypes.c_double)
 

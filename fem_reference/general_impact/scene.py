@@ -11,16 +11,8 @@ from ..body.scene import BodyFile, BodyScene, Contact
 from ..common.bodies import Compact, Material, Plate, Sphere
 from ..common.decode import At, decode
 from ..common.errors import SceneError
-from ..impact.scene import ImpactScene
+from ..impact.scene import ScenePerhapsRigid
 
-Rigid = Literal["none", "outer", "inner", "both"]
-RIGID: dict[Rigid, tuple[str, ...]] = {
-    "none": (),
-    "outer": ("outer",),
-    "inner": ("inner",),
-    "both": ("outer", "inner"),
-}
-"""Names of the bodies that are rigid."""
 OUTER, INNER = "outer", "inner"
 
 
@@ -51,7 +43,7 @@ class Wall:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene(ImpactScene):
+class Scene(ScenePerhapsRigid):
     """A body (outer) strikes what may have a second one (inner) behind it, or that one itself."""
 
     kind: Literal["impact"]
@@ -78,12 +70,6 @@ class Scene(ImpactScene):
     elements_per_contact_radius: Annotated[float, At("reference.elements_per_contact_radius")]
     geometry: Annotated[Literal["solid"], At("reference.geometry")] = "solid"
     element_order: Annotated[Literal[1, 2], At("reference.element_order")] = 2
-    rigid_bodies: Annotated[Rigid, At("reference.rigid")] = "none"
-
-    @property
-    def rigid(self) -> tuple[str, ...]:
-        """Names of the bodies that are rigid, tip included."""
-        return RIGID[self.rigid_bodies]
 
     @property
     def struck_is_inner(self) -> bool:

@@ -3,9 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from ..common.decode import At
+
+Rigid = Literal["none", "outer", "inner", "both"]
+RIGID: dict[Rigid, tuple[str, ...]] = {
+    "none": (),
+    "outer": ("outer",),
+    "inner": ("inner",),
+    "both": ("outer", "inner"),
+}
+"""Names of the bodies that are rigid."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,3 +31,15 @@ class ImpactScene:
     """s; None: until no further contact is possible."""
     raw: Annotated[dict[str, Any], At()]
     """The document as given, for the provenance."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScenePerhapsRigid(ImpactScene):
+    """A scene of which outer and inner body may be rigid; of solid geometry only."""
+
+    rigid_bodies: Annotated[Rigid, At("reference.rigid")] = "none"
+
+    @property
+    def rigid(self) -> tuple[str, ...]:
+        """Names of the bodies that are rigid, tip included."""
+        return RIGID[self.rigid_bodies]

@@ -11,16 +11,8 @@ from typing import Annotated, Any, Literal
 from ..common.bodies import Bender, Body, Compact, Material, Plate, Sphere, Stack
 from ..common.decode import At, decode, read_document
 from ..common.fluid import Fluid
-from ..impact.scene import ImpactScene
+from ..impact.scene import ScenePerhapsRigid
 from .limits import require_solvable
-
-Rigid = Literal["none", "outer", "inner", "both"]
-RIGID: dict[Rigid, tuple[str, ...]] = {
-    "none": (),
-    "outer": ("outer",),
-    "inner": ("inner",),
-    "both": ("outer", "inner"),
-}
 
 
 @dataclass(frozen=True)
@@ -34,7 +26,7 @@ class Series:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene(ImpactScene):
+class Scene(ScenePerhapsRigid):
     """A body (outer) strikes a plate that a second one (inner) touches from below."""
 
     kind: Literal["plate-impact"]
@@ -68,18 +60,11 @@ class Scene(ImpactScene):
     geometry: Annotated[Literal["axisymmetric", "solid"], At("reference.geometry")]
     element_order: Annotated[Literal[1, 2], At("reference.element_order")] = 2
     """1 linear, 2 quadratic; of solid geometry only."""
-    rigid_bodies: Annotated[Rigid, At("reference.rigid")] = "none"
-    """Of solid geometry only; see `rigid`."""
 
     @cached_property
     def plate(self) -> Plate:
         """As it moves: in a fluid with its added mass and damping."""
         return self.dry_plate if self.fluid is None else self.fluid.wet(self.dry_plate)
-
-    @property
-    def rigid(self) -> tuple[str, ...]:
-        """Bodies ("outer", "inner") that are rigid, tip included."""
-        return RIGID[self.rigid_bodies]
 
     @property
     def frictions(self) -> dict[str, float]:

@@ -29,10 +29,10 @@ class ElasticBody:
     """At the start, m/s."""
 
 
-def symmetry_plane(mesh: TetMesh, axis: int, value: float = 0.0) -> Ints:
-    """Fixed components of the nodes on the plane of symmetry x_axis = value."""
+def symmetry_plane(mesh: TetMesh, axis: int) -> Ints:
+    """Fixed components of the nodes on the plane of symmetry x_axis = 0."""
     length = float(np.ptp(mesh.points, axis=0).max())
-    on = np.flatnonzero(np.abs(mesh.points[:, axis] - value) < 1e-9 * length)
+    on = np.flatnonzero(np.abs(mesh.points[:, axis]) < 1e-9 * length)
     return np.asarray(3 * on + axis)
 
 

@@ -14,9 +14,9 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The scene file, among the shipped scenes or the examples.
+/// The scene file.
 fn scene_file(name: &str) -> PathBuf {
-    resolve(name).unwrap_or_else(|_| root().join("scenes/examples").join(format!("{name}.toml")))
+    resolve(name).expect("shipped scene")
 }
 
 fn stored(name: &str) -> (Scene, Stored) {

@@ -34,9 +34,7 @@ impl FieldMesh {
     /// # Errors
     /// One sentence that says what is wrong with the file.
     pub(crate) fn read(path: &Path) -> Result<Self, String> {
-        let fail = |what: &str| format!("{}: {what}", path.display());
-        let text = fs::read_to_string(path).map_err(|e| fail(&e.to_string()))?;
-        parse(&text).map_err(|what| fail(&what))
+        read(path, parse)
     }
 }
 
@@ -54,8 +52,7 @@ impl Stored {
     /// # Errors
     /// One sentence that says what is wrong with a file.
     pub fn stress_near(&self, time: f64) -> Result<Option<(f64, FieldMesh)>, String> {
-        let nearest = series_nearest(&self.folder, time)?;
-        nearest.map(|(instant, file)| Ok((instant, FieldMesh::read(&file)?))).transpose()
+        nearest(&self.folder, time, parse)
     }
 
     /// The file that lists the fields that are stored, for ParaView.
@@ -64,11 +61,23 @@ impl Stored {
     }
 }
 
-/// Instant in s and file of the field in the series of `folder` that is nearest to `time` (s); `None` if
+/// What `parse` makes of the text of a file.
+pub(super) fn read<T>(path: &Path, parse: fn(&str) -> Result<T, String>) -> Result<T, String> {
+    let fail = |what: String| format!("{}: {what}", path.display());
+    let text = fs::read_to_string(path).map_err(|e| fail(e.to_string()))?;
+    parse(&text).map_err(fail)
+}
+
+/// Instant in s and contents of the field in the series of `folder` that is nearest to `time` (s); `None` if
 /// none is there.
-pub(super) fn series_nearest(folder: &Path, time: f64) -> Result<Option<(f64, PathBuf)>, String> {
+pub(super) fn nearest<T>(
+    folder: &Path,
+    time: f64,
+    parse: fn(&str) -> Result<T, String>,
+) -> Result<Option<(f64, T)>, String> {
     let series = series(folder)?.into_iter();
-    Ok(series.min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs())))
+    let nearest = series.min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs()));
+    nearest.map(|(instant, file)| Ok((instant, read(&file, parse)?))).transpose()
 }
 
 /// Instants in s and files of the fields in the series of `folder` that are there.

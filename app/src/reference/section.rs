@@ -1,8 +1,7 @@
 //! The plane of symmetry of a stored seal seat: faces of its tetrahedra there, and their stress.
 
 use super::Stored;
-use super::fields::{Arrays, series_nearest};
-use std::path::Path;
+use super::fields::{Arrays, nearest, read};
 
 /// Corners of the faces of a tetrahedron.
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
@@ -26,7 +25,7 @@ impl Stored {
     /// # Errors
     /// One sentence that says what is wrong with the file.
     pub fn section(&self) -> Result<MeshSection, String> {
-        read(&self.folder.join("mesh.vtu"))
+        read(&self.folder.join("mesh.vtu"), parse)
     }
 
     /// The stress there at the instant kept that is nearest to `time` (s), and that instant; `None` if none is kept.
@@ -34,15 +33,8 @@ impl Stored {
     /// # Errors
     /// One sentence that says what is wrong with a file.
     pub fn section_near(&self, time: f64) -> Result<Option<(f64, MeshSection)>, String> {
-        let nearest = series_nearest(&self.folder, time)?;
-        nearest.map(|(instant, file)| Ok((instant, read(&file)?))).transpose()
+        nearest(&self.folder, time, parse)
     }
-}
-
-fn read(path: &Path) -> Result<MeshSection, String> {
-    let fail = |what: String| format!("{}: {what}", path.display());
-    let text = std::fs::read_to_string(path).map_err(|e| fail(e.to_string()))?;
-    parse(&text).map_err(fail)
 }
 
 fn parse(text: &str) -> Result<MeshSection, String> {

@@ -1,8 +1,7 @@
 //! The stress in the struck body of a solid reference.
 
 use super::Stored;
-use super::fields::{Arrays, series_nearest};
-use std::path::Path;
+use super::fields::{Arrays, nearest};
 
 /// Number of the struck body among the elastic ones.
 const STRUCK: f64 = 0.0;
@@ -44,15 +43,8 @@ impl Stored {
     /// # Errors
     /// One sentence that says what is wrong with a file.
     pub fn solid_stress_near(&self, time: f64) -> Result<Option<(f64, SolidStress)>, String> {
-        let nearest = series_nearest(&self.folder, time)?;
-        nearest.map(|(instant, file)| Ok((instant, read(&file)?))).transpose()
+        nearest(&self.folder, time, parse)
     }
-}
-
-fn read(path: &Path) -> Result<SolidStress, String> {
-    let fail = |what: String| format!("{}: {what}", path.display());
-    let text = std::fs::read_to_string(path).map_err(|e| fail(e.to_string()))?;
-    parse(&text).map_err(fail)
 }
 
 fn parse(text: &str) -> Result<SolidStress, String> {

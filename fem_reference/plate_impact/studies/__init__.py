@@ -29,7 +29,7 @@ def _bands(arguments: argparse.Namespace) -> None:
 
 def _of_cost(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scene", type=Path, required=True, help="or provenance.json")
-    parser.add_argument("--out", type=Path, required=True, help="JSON; a figure .svg is added")
+    parser.add_argument("--out", type=Path, required=True, help="JSON")
 
 
 def _cost(arguments: argparse.Namespace) -> None:

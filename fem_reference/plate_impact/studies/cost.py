@@ -6,7 +6,6 @@ import json
 import math
 import sys
 import time
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -146,7 +145,7 @@ def _point(scene: Scene, factor: float, sub_cycling: str, exact: dict[str, float
 
 
 def cost(scene: Scene, out: Path, progress: Progress) -> dict[str, Any]:
-    """Solve on `MESHES` meshes, measure, write ``out`` (JSON) and a figure .svg beside it."""
+    """Solve on `MESHES` meshes, measure, write ``out`` (JSON)."""
     with TemporaryDirectory() as folder:
         settings = Settings(0.9, Path(folder), 0.0, "exact")
 
@@ -173,7 +172,6 @@ def cost(scene: Scene, out: Path, progress: Progress) -> dict[str, Any]:
     }
     out.parent.mkdir(parents=True, exist_ok=True)
     write_json(out, document)
-    out.with_suffix(".svg").write_text(_figure(scene.name, points), encoding="utf-8")
     return document
 
 
@@ -181,61 +179,3 @@ def report_cost(path: Path, out: Path) -> None:
     """`cost` of a scene file; what the machine delivers goes to standard output as JSON."""
     document = cost(read_scene(path), out, Progress(sys.stderr))
     print(json.dumps(document["limits"], indent=2))
-
-
-def _figure(name: str, points: Sequence[Point]) -> str:
-    """Relative error over processor time, both logarithmic."""
-    width, height, left, bottom, top = 560.0, 380.0, 80.0, 50.0, 40.0
-    x = [math.log10(point.seconds) for point in points]
-    y = [math.log10(max(point.relative_error, 1e-6)) for point in points]
-    x0, x1, y0, y1 = min(x) - 0.1, max(x) + 0.1, min(y) - 0.15, max(y) + 0.15
-
-    def place(u: float, v: float) -> tuple[float, float]:
-        across = left + (width - left - 20.0) * (u - x0) / (x1 - x0)
-        return across, top + (height - top - bottom) * (y1 - v) / (y1 - y0)
-
-    parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" '
-        'font-family="DejaVu Sans, sans-serif" font-size="13">',
-        f"<title>{name}: cost against error</title>",
-        f'<rect width="{width:g}" height="{height:g}" fill="#fff"/>',
-    ]
-    marks = [m * 10.0**k for k in range(-6, 5) for m in (1, 2, 5)]
-    for mark in marks:
-        at = math.log10(mark)
-        if x0 < at < x1:
-            u, _ = place(at, y0)
-            parts.append(f'<path d="M{u:.1f} {top}V{height - bottom}" stroke="#e3e3e3"/>')
-            parts.append(
-                f'<text x="{u:.1f}" y="{height - bottom + 18}" text-anchor="middle">{mark:g}</text>'
-            )
-        if y0 < at < y1:
-            _, v = place(x0, at)
-            parts.append(f'<path d="M{left} {v:.1f}H{width - 20}" stroke="#e3e3e3"/>')
-            parts.append(
-                f'<text x="{left - 8}" y="{v + 4:.1f}" text-anchor="end">{100 * mark:g} %</text>'
-            )
-    for k, (kind, colour) in enumerate((("on", "#0072b2"), ("off", "#d55e00"))):
-        line = [place(u, v) for u, v, p in zip(x, y, points, strict=True) if p.sub_cycling == kind]
-        data = "L".join(f"{u:.1f} {v:.1f}" for u, v in line)
-        parts.append(f'<path d="M{data}" fill="none" stroke="{colour}" stroke-width="1.7"/>')
-        parts += [f'<circle cx="{u:.1f}" cy="{v:.1f}" r="3.5" fill="{colour}"/>' for u, v in line]
-        if kind == "on":
-            dofs = [point.dofs for point in points if point.sub_cycling == kind]
-            parts += [
-                f'<text x="{u:.1f}" y="{v + 17:.1f}" font-size="10" fill="#555" '
-                f'text-anchor="middle">{number}</text>'
-                for (u, v), number in zip(line, dofs, strict=True)
-            ]
-        parts.append(f'<text x="{left + 190 * k}" y="24" fill="{colour}">sub-cycling {kind}</text>')
-    parts.append(
-        f'<text x="{width / 2}" y="{height - 10}" text-anchor="middle">'
-        "processor time of the loop, s (at the points: degrees of freedom)</text>"
-    )
-    middle = top + (height - top - bottom) / 2.0
-    parts.append(
-        f'<text transform="translate(16 {middle:g}) rotate(-90)" text-anchor="middle">'
-        "largest error of efficiency, peaks</text>"
-    )
-    parts.append("</svg>\n")
-    return "\n".join(parts)

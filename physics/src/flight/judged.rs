@@ -1,7 +1,7 @@
 //! The verdict on a launch, with its margin and its share over the scatter of the launch.
 
 use super::landscape::Landscape;
-use super::run::{Ending, Flight, fly};
+use super::run::{Flight, fly};
 use super::{Launch, Seat, Setup};
 
 /// Launches over whose seats the share is taken.
@@ -126,30 +126,4 @@ fn landings(
         Landing { launch, seat: seat(&setup, landscape, &launch) }
     };
     (0..LAUNCHES).map(landing).collect()
-}
-
-/// Least speed in m/s of a launch in the direction of `launch` that shifts, between `low` and `high`, to a millionth; `None` if none is
-/// found in steps of a hundredth.
-pub fn least_shift(
-    setup: &Setup,
-    landscape: &Landscape,
-    launch: &Launch,
-    [low, high]: [f64; 2],
-) -> Option<f64> {
-    let shifts = |speed: f64| {
-        matches!(fly(setup, landscape, &Launch { speed, ..*launch }, false).ending, Ending::Seat(Seat::Other))
-    };
-    let mut speed = low;
-    while !shifts(speed) {
-        if speed >= high {
-            return None;
-        }
-        speed = (1.01 * speed).min(high);
-    }
-    let (mut too_slow, mut enough) = (speed / 1.01, speed);
-    while enough - too_slow > 1e-6 * enough {
-        let middle = 0.5 * (too_slow + enough);
-        if shifts(middle) { enough = middle } else { too_slow = middle }
-    }
-    Some(enough)
 }

@@ -24,7 +24,7 @@ mod vibration;
 
 pub use chamber::{Chamber, TooNarrow};
 pub use field::{Excitation, Field, SphereDrag, Wave};
-pub use judged::{Judged, Landing, LaunchDeviation, judge, least_shift, map_of_landings};
+pub use judged::{Judged, Landing, LaunchDeviation, judge, map_of_landings};
 pub use landscape::{Landscape, Saddle};
 pub use run::{Ending, Flight, FlightContact, fly};
 pub use spring::Spring;

@@ -222,11 +222,10 @@ fn least_speed_and_the_bands_of_too_hard_blows() {
     let arm = 0.5e-3_f64.hypot(5e-3) - 5e-3;
     let least = (2.0 * spring.force * arm / setup.mass).sqrt();
     assert!((landscape.least_speed(setup.mass) / least - 1.0).abs() < 1e-9);
-    let found = least_shift(&setup, &landscape, &along(0.0), [0.5 * least, 2.0 * least]).expect("it shifts");
-    assert!((found / least - 1.0).abs() < 2e-6, "{found} instead of {least}");
-    for n in 0..5 {
+    for (n, off) in [(0, 2e-6), (1, 1e-3), (2, 1e-3), (3, 1e-3), (4, 1e-3)] {
         let bound = least * restitution.powi(-n);
-        let seats = [0.999, 1.001].map(|share| fly(&setup, &landscape, &along(share * bound), false).ending);
+        let seats =
+            [1.0 - off, 1.0 + off].map(|share| fly(&setup, &landscape, &along(share * bound), false).ending);
         let [before, after] = if n % 2 == 0 { [Seat::Same, Seat::Other] } else { [Seat::Other, Seat::Same] };
         assert_eq!(seats, [before, after].map(Ending::Seat), "band {n}");
     }

@@ -277,7 +277,8 @@ impl SeatModel {
         warnings.extend(doubts::of_contacts(&self.system, result));
         let step = result.time / result.tally.steps as f64;
         let (other, share) = &self.compared;
-        let error = share * truncation::difference(result, &self.integrate_of(other, step, tolerance, false)?);
+        let error =
+            share * truncation::difference(result, &self.integrate_of(other, step, tolerance, false)?);
         warnings.extend(truncation::warning(error, self.system.omega.len()));
         warnings.extend(balance_check(result.energy_residual, result.momentum_residual, tolerance)?);
         if result.stop == StopReason::Cut {
