@@ -3,7 +3,8 @@
     python validation/calculix.py SCENES validation/base.jsonl ROWS [--count 8]
 
 draws dry scenes with two spheres, solves those that have no `ROWS/<scene>.json` yet (minutes each),
-writes them into `calculix.jsonl` next to the table, and prints how many values agree.
+writes them into `calculix.jsonl` next to the table, and prints how many values agree, and how far
+they differ.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import subprocess
 import tempfile
 import tomllib
 from pathlib import Path
+from statistics import median
 
 from models import PROGRAM
 from solve import each_on_a_core, write_whole
@@ -85,10 +87,16 @@ def main() -> None:
         for name in chosen
     ]
     write(given.table.with_name("calculix.jsonl"), lines)
+    differences: dict[str, list[float]] = {}
     for line in lines:
-        agree = agreeing(taken[line["scene"]]["values"], line["values"])
+        ours, theirs = taken[line["scene"]]["values"], line["values"]
+        agree = agreeing(ours, theirs)
         other = ", ".join(name for name, same in agree.items() if not same)
         print(f"{line['scene']}: {sum(agree.values())} of {len(agree)} agree; {other or 'all'}")
+        for name in agree:
+            differences.setdefault(name, []).append(abs(ours[name][0] / theirs[name][0] - 1.0))
+    for name, of in sorted(differences.items()):
+        print(f"{name}: median difference {100 * median(of):.2g} %, largest {100 * max(of):.2g} %")
 
 
 if __name__ == "__main__":

@@ -55,9 +55,10 @@ impl Stored {
         nearest(&self.folder, time, parse)
     }
 
-    /// The file that lists the fields that are stored, for ParaView.
+    /// The file that lists the fields that are stored, for ParaView; `None` where none of them is there.
     pub(crate) fn fields_over_time(&self) -> Option<PathBuf> {
-        Some(self.folder.join(SERIES)).filter(|file| file.is_file())
+        let is_there = series(&self.folder).is_ok_and(|fields| !fields.is_empty());
+        is_there.then(|| self.folder.join(SERIES))
     }
 }
 
