@@ -20,6 +20,8 @@ mod prediction;
 mod program;
 mod record_formats;
 mod scene_files;
+#[path = "../support/sealed.rs"]
+mod sealed;
 mod second_program;
 mod snapshots;
 #[path = "../support/store_fixture.rs"]

@@ -1,8 +1,8 @@
 //! CalculiX's solution beside the reference: shown, asked for, missing, contradicting itself, disagreeing.
 
+use crate::sealed::{change_summary, copy_shipped};
 use assert_cmd::Command;
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 use std::fs;
 use std::path::Path;
 
@@ -31,24 +31,8 @@ fn compared(store: &Path, more: &[&str]) -> Ended {
 
 /// A copy of the shipped solution in `store`, whose summary `change` makes another one; its checksum is right.
 fn changed(store: &Path, change: impl Fn(&mut Value)) {
-    let (from, to) = (Path::new(ROOT).join("fem_reference/solutions").join(ENTRY), store.join(ENTRY));
-    fs::create_dir_all(&to).unwrap();
-    for file in fs::read_dir(&from).unwrap().flatten() {
-        fs::copy(file.path(), to.join(file.file_name())).unwrap();
-    }
-    let mut summary: Value = serde_json::from_slice(&fs::read(to.join("summary.json")).unwrap()).unwrap();
-    change(&mut summary);
-    let text = summary.to_string();
-    let hash: String = Sha256::digest(&text).iter().map(|byte| format!("{byte:02x}")).collect();
-    fs::write(to.join("summary.json"), text).unwrap();
-    let sums = fs::read_to_string(to.join("checksums.sha256")).unwrap();
-    let other_sums =
-        sums.lines().filter(|line| !line.ends_with("summary.json")).map(|line| format!("{line}\n"));
-    fs::write(
-        to.join("checksums.sha256"),
-        other_sums.collect::<String>() + &format!("{hash}  summary.json\n"),
-    )
-    .unwrap();
+    copy_shipped(ENTRY, &store.join(ENTRY));
+    change_summary(&store.join(ENTRY), change);
 }
 
 /// The plate's frequency as if its mesh series had given `factor` times as much.

@@ -1,11 +1,11 @@
 //! A test of the gate itself: errors are put into a stored reference, sealed again with fresh checksums, and
 //! the gate has to fail with exit status 10; with the untouched one it has to pass. `harness.rs` puts every error into every curve.
 
+use crate::sealed::{change_summary, copy_shipped, seal};
 use assert_cmd::Command;
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const SCENES: [&str; 2] = ["scaled-plate-r10", "scaled-plate-r6.35"];
 
@@ -60,20 +60,11 @@ impl Table {
 /// A store that holds `scene` only, its solution changed by `change` and its checksums made again.
 fn changed(scene: &str, change: impl Fn(&Path)) -> tempfile::TempDir {
     let store = tempfile::tempdir().unwrap();
-    let from = solution(scene);
     let to = store.path().join(scene).join("paper");
-    fs::create_dir_all(&to).unwrap();
-    for entry in fs::read_dir(&from).unwrap() {
-        let entry = entry.unwrap();
-        fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
-    }
+    copy_shipped(&format!("{scene}/paper"), &to);
     change(&to);
     seal(&to);
     store
-}
-
-fn solution(scene: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fem_reference/solutions").join(scene).join("paper")
 }
 
 /// As [`changed`], of the history alone.
@@ -88,28 +79,7 @@ fn store(scene: &str, change: impl Fn(&mut Table)) -> tempfile::TempDir {
 
 /// As [`changed`], of the summary alone.
 fn summary(scene: &str, change: impl Fn(&mut Value)) -> tempfile::TempDir {
-    changed(scene, |folder| {
-        let file = folder.join("summary.json");
-        let mut summary = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
-        change(&mut summary);
-        fs::write(&file, summary.to_string()).unwrap();
-    })
-}
-
-/// Writes checksums.sha256 of a solution again.
-fn seal(folder: &Path) {
-    let mut lines: Vec<String> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .filter(|name| name != "checksums.sha256")
-        .map(|name| {
-            let digest = Sha256::digest(fs::read(folder.join(&name)).unwrap());
-            let hex: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
-            format!("{hex}  {name}\n")
-        })
-        .collect();
-    lines.sort();
-    fs::write(folder.join("checksums.sha256"), lines.concat()).unwrap();
+    changed(scene, |folder| change_summary(folder, &change))
 }
 
 /// Exit status of the gate on `scene` with the references of `store`.
@@ -232,7 +202,8 @@ fn bands_of_curves_that_the_summary_does_not_know_are_damage() {
 #[test]
 fn the_mesh_of_another_solution_is_damage() {
     let foreign = changed(SCENES[0], |folder| {
-        fs::copy(solution(SCENES[1]).join("mesh.vtu"), folder.join("mesh.vtu")).unwrap();
+        let other = format!("fem_reference/solutions/{}/paper/mesh.vtu", SCENES[1]);
+        fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(other), folder.join("mesh.vtu")).unwrap();
     });
     assert_eq!(gate(SCENES[0], foreign.path()), 11);
 }

@@ -1,8 +1,8 @@
 //! The gate in continuous integration: results over commits, changes that need a reason, messages for GitHub.
 
+use crate::sealed::{change_summary, copy_shipped};
 use assert_cmd::Command;
 use serde_json::Value;
-use sha2::{Digest, Sha256};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -19,13 +19,7 @@ impl Repository {
         let repository = Repository { folder: tempfile::tempdir().unwrap() };
         let project = Path::new(env!("CARGO_MANIFEST_DIR"));
         fs::copy(project.join(format!("scenes/{SCENE}.toml")), repository.scene()).unwrap();
-        let from = project.join("fem_reference/solutions").join(SCENE).join("coarse");
-        let to = repository.solution();
-        fs::create_dir_all(&to).unwrap();
-        for entry in fs::read_dir(from).unwrap() {
-            let entry = entry.unwrap();
-            fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
-        }
+        copy_shipped(&format!("{SCENE}/coarse"), &repository.solution());
         repository.git(&["init", "-q"]);
         repository.commit("first");
         repository
@@ -97,19 +91,8 @@ impl Repository {
     }
 
     /// Changes numbers of the stored summary and seals it again.
-    fn change_reference(&self, change: impl Fn(&mut Value)) {
-        let file = self.solution().join("summary.json");
-        let mut summary: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
-        change(&mut summary);
-        fs::write(&file, summary.to_string()).unwrap();
-        let digest: String =
-            Sha256::digest(fs::read(&file).unwrap()).iter().map(|b| format!("{b:02x}")).collect();
-        let sums = self.solution().join("checksums.sha256");
-        let lines = fs::read_to_string(&sums).unwrap();
-        let line = |l: &str| {
-            if l.ends_with("  summary.json") { format!("{digest}  summary.json\n") } else { format!("{l}\n") }
-        };
-        fs::write(sums, lines.lines().map(line).collect::<String>()).unwrap();
+    fn change_reference(&self, change: impl FnOnce(&mut Value)) {
+        change_summary(&self.solution(), change);
     }
 
     fn accepted(&self) -> Vec<Value> {

@@ -15,5 +15,7 @@ mod range_of_validity;
 mod record_faults;
 mod validated;
 
+#[path = "../support/sealed.rs"]
+mod sealed;
 #[path = "../support/synthetic_impact.rs"]
 mod synthetic_impact;

@@ -9,6 +9,8 @@ mod scene_schema;
 mod store_lookup;
 mod store_solve;
 
+#[path = "../support/sealed.rs"]
+mod sealed;
 #[path = "../support/store_fixture.rs"]
 mod store_fixture;
 #[path = "../support/waiting.rs"]

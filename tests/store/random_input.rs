@@ -2,7 +2,8 @@
 //!
 //! `PROPTEST_CASES=200000 cargo test --release --test random_input` fuzzes for longer.
 
-use crate::store_fixture::{scene, seal, write_entry};
+use crate::sealed::seal;
+use crate::store_fixture::{scene, write_entry};
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::scene::Scene;
 use proptest::prelude::*;

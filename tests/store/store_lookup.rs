@@ -1,6 +1,7 @@
 //! The store gives out a reference only if it is intact and of exactly this scene; otherwise it
 //! says which file is damaged or what has changed since.
 
+use crate::sealed::seal;
 use crate::store_fixture::*;
 use impactcheck::reference::{Lookup, Resolution, Store};
 use impactcheck::scene::Scene;

@@ -1,10 +1,10 @@
 //! A small stored solution, written as `fem_reference` writes it.
 #![allow(dead_code)] // each test file uses its part
 
+use crate::sealed::seal;
 use impactcheck::reference::{Resolution, settings_hash};
 use impactcheck::scene::Scene;
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 use std::path::Path;
 
 pub const SCENE: &str = include_str!("../../scenes/scaled-plate-r10.toml");
@@ -55,15 +55,4 @@ pub fn write_entry(folder: &Path, scene: &Scene, resolution: Resolution) {
     write("history.csv", HISTORY.to_owned());
     write("mesh.vtu", MESH.to_owned());
     seal(folder);
-}
-
-/// Writes the checksums of what is in `folder`.
-pub fn seal(folder: &Path) {
-    let mut lines = String::new();
-    for name in ["history.csv", "mesh.vtu", "provenance.json", "summary.json"] {
-        let bytes = std::fs::read(folder.join(name)).expect("file");
-        let sum: String = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
-        lines += &format!("{sum}  {name}\n");
-    }
-    std::fs::write(folder.join("checksums.sha256"), lines).expect("checksums");
 }
