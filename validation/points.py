@@ -14,7 +14,7 @@ STRATA = {
     "friction": 40,
     "relaxing": 40,
     "yielding": 40,
-    "off-centre": 48,
+    "off-centre": 60,
     "body": 60,
     "seat": 60,
     "oblique": 200,

@@ -7,8 +7,8 @@ use super::{FEWEST, LEVEL, error, errors};
 use impactcheck_physics::scene::Model;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Fewest scenes of a group that is halved: a prediction needs [`FEWEST`].
-const HALVED: usize = 2 * FEWEST;
+/// Fewest scenes of a group that is halved: a prediction needs [`FEWEST`] values, which not every reference determines.
+pub const HALVED: usize = 4 * FEWEST;
 
 /// A quantity of a solved scene, with the interval that other scenes of its group give it.
 #[derive(Debug, Clone)]

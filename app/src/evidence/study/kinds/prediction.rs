@@ -7,7 +7,7 @@ use crate::plot::axis::{Plot, PlotAxis};
 use crate::plot::colours::{MODELS, hex};
 use crate::plot::polyline::path;
 use crate::plot::{Svg, Theme};
-use crate::prediction::held_out::{HeldOut, JudgedValue, expected, held_out, quantities, strata};
+use crate::prediction::held_out::{HALVED, HeldOut, JudgedValue, expected, held_out, quantities, strata};
 use crate::prediction::{MEASURES, SolvedScene, error, refused, solved};
 use crate::scene::Model;
 use maud::{Markup, html};
@@ -83,7 +83,7 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 
 fn description(held: &[HeldOut]) -> String {
     let mut text = format!(
-        "Prediction intervals of 95 % on the {} solved random scenes of the validation base: in groups of at least 60 scenes one half \
+        "Prediction intervals of 95 % on the {} solved random scenes of the validation base: in groups of at least {HALVED} scenes one half \
          predicts the other one, both ways; in smaller ones each scene is predicted by all others. `within`: share of the references' values that lie in their interval, the square of the reference's error added to that of its half width (`within_alone`: not added); \
          it is expected between the two shares that follow in 95 of 100 such studies. Errors and half widths are relative to the value; of velocities to the impact \
          speed; of an efficiency below 5 % and an inner force below 5 % of the outer one to these. Bias and standard deviation are those of \
