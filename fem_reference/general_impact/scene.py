@@ -11,7 +11,7 @@ from ..body.scene import BodyFile, BodyScene, Contact
 from ..common.bodies import Compact, Material, Plate, Sphere
 from ..common.decode import At, decode
 from ..common.errors import SceneError
-from ..impact.scene import ScenePerhapsRigid
+from ..impact.scene import TwoBodyScene
 
 OUTER, INNER = "outer", "inner"
 
@@ -43,7 +43,7 @@ class Wall:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene(ScenePerhapsRigid):
+class Scene(TwoBodyScene):
     """A body (outer) strikes what may have a second one (inner) behind it, or that one itself."""
 
     kind: Literal["impact"]

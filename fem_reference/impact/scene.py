@@ -34,8 +34,8 @@ class ImpactScene:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ScenePerhapsRigid(ImpactScene):
-    """A scene of which outer and inner body may be rigid; of solid geometry only."""
+class TwoBodyScene(ImpactScene):
+    """A scene with an outer and an inner body, which may be rigid in solid geometry."""
 
     rigid_bodies: Annotated[Rigid, At("reference.rigid")] = "none"
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from ..common.bodies import Bender, Body, Compact, Material, Plate, Sphere, Stack
 from ..common.decode import At, decode, read_document
 from ..common.fluid import Fluid
-from ..impact.scene import ScenePerhapsRigid
+from ..impact.scene import TwoBodyScene
 from .limits import require_solvable
 
 
@@ -26,7 +26,7 @@ class Series:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scene(ScenePerhapsRigid):
+class Scene(TwoBodyScene):
     """A body (outer) strikes a plate that a second one (inner) touches from below."""
 
     kind: Literal["plate-impact"]

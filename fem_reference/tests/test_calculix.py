@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-import os
 import re
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +17,6 @@ from fem_reference.calculix import program
 from fem_reference.calculix.contacts import contact_end, impulses
 from fem_reference.calculix.deck import MILLI, Deck, Steps
 from fem_reference.calculix.printed import Printed, frequencies
-from fem_reference.calculix.program import VARIABLE
 from fem_reference.calculix.wedge import SHARE, quadratic, wedge, wedge_part
 from fem_reference.common.arrays import Floats
 from fem_reference.common.bodies import Edge, Plate
@@ -57,13 +54,7 @@ def test_a_ring_of_quadratic_elements_has_its_volume_and_weights_its_nodes() -> 
     assert volumes @ plane.points[:, 1] / volumes.sum() == pytest.approx(1.5, rel=1e-13)
 
 
-needs_calculix = pytest.mark.skipif(
-    shutil.which(os.environ.get(VARIABLE) or "ccx") is None and "CI" not in os.environ,
-    reason="CalculiX is not installed; it is optional, but not on CI, where these tests then fail",
-)
-
-
-@needs_calculix
+@pytest.mark.calculix
 def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
     """CalculiX's own mass of the wedges against closed forms."""
     scene = small()
@@ -82,7 +73,7 @@ def test_the_deck_has_the_masses_of_spheres_and_plate(tmp_path: Path) -> None:
     assert made.masses == pytest.approx([found[n] for n in ("OUTER", "PLATE", "INNER")], rel=1e-4)
 
 
-@needs_calculix
+@pytest.mark.calculix
 @pytest.mark.parametrize(("edge", "eigenvalue"), [("clamped", 10.2158), ("free", 9.0031)])
 def test_a_thin_plate_vibrates_as_in_kirchhoffs_theory(
     tmp_path: Path, edge: Edge, eigenvalue: float
@@ -103,7 +94,7 @@ def test_a_thin_plate_vibrates_as_in_kirchhoffs_theory(
     assert found == pytest.approx(exact, rel=2e-3)
 
 
-@needs_calculix
+@pytest.mark.calculix
 @pytest.mark.evidence
 def test_a_coarse_impact_keeps_its_balances_and_agrees_with_explicit_elements(
     tmp_path: Path,
@@ -124,7 +115,7 @@ def test_a_coarse_impact_keeps_its_balances_and_agrees_with_explicit_elements(
     )
 
 
-@needs_calculix
+@pytest.mark.calculix
 def test_the_momentum_of_a_free_plate_and_both_spheres_lasts(tmp_path: Path) -> None:
     scene = small(plate__edge="free", run={"end_time": 1.2e-5}, inner__gap=1e-6)
     solution = solved(scene, tmp_path, 0.3)

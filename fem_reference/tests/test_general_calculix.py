@@ -36,7 +36,6 @@ from fem_reference.solid.system import make_loop
 
 from .bodies import write_cad
 from .conftest import STEEL
-from .test_calculix import needs_calculix
 
 SPHERE = {"kind": "sphere", "radius": 0.004, "material": STEEL}
 WEDGE = TetMesh("tet", np.vstack([np.zeros(3), np.eye(3)]), np.array([[0, 1, 2, 3]]))
@@ -185,7 +184,9 @@ def test_what_the_deck_does_not_describe_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("opposite", [False, True])
-@pytest.mark.parametrize("program", ["explicit", pytest.param("CalculiX", marks=needs_calculix)])
+@pytest.mark.parametrize(
+    "program", ["explicit", pytest.param("CalculiX", marks=pytest.mark.calculix)]
+)
 def test_the_first_frequency_is_one_that_the_contact_excites(
     program: str, opposite: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -218,7 +219,7 @@ def test_the_first_frequency_is_one_that_the_contact_excites(
     assert found == pytest.approx(math.sqrt(stiffness / mass), rel=5e-3)
 
 
-@needs_calculix
+@pytest.mark.calculix
 @pytest.mark.evidence
 def test_a_small_impact_keeps_its_balances_and_agrees_with_the_explicit_solver(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

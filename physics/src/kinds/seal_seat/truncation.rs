@@ -2,7 +2,7 @@
 //!
 //! Their flexibility is kept, their inertia is lost. A run with fewer modes than the default is compared with one with the default:
 //! 16 and 8 modes may agree, and both lack a mode that matters. Otherwise the error falls about with the square of the number of
-//! modes. A run with half of them is off by four times as much, and a third of the difference is the error.
+//! modes. A run with half of them has four times the error, and a third of the difference is the error.
 
 use super::integration::Integration;
 
